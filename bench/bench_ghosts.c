@@ -152,9 +152,9 @@ static bool measure(bench *b, const char *name, bool appears) {
 static bool open_bench(bench *b, const char *spec, double ahead) {
     noc_log *log = bench_log();
     noc_traffic_params traffic = noc_traffic_default_params();
-    int models[TRAFFIC_MODELS];
+    traffic_models models = { .of = { 0 } };
     b->scene = bench_scene(spec, log);
-    if (!b->scene || !traffic_models(b->scene, &traffic, models) || noc_scene_commit(b->scene) ||
+    if (!b->scene || !traffic_our_models(b->scene, &traffic, &models) || noc_scene_commit(b->scene) ||
         noc_scene_camera(b->scene, NOC_VIEWPOINT_STREET, (double)b->params.width / b->params.height, &b->camera))
         return false;
     const double *e = b->camera.eye, *t = b->camera.target;
@@ -166,7 +166,8 @@ static bool open_bench(bench *b, const char *spec, double ahead) {
         d[0] / length, -d[1] / length, 0, at[0], d[1] / length, d[0] / length, 0, at[1], 0, 0, 1, z
     };
     memcpy(b->transform, rows, sizeof(rows));
-    b->model = models[0];
+    b->model = models.of.data[0].model;
+    array_free(&models.of);
     for (int k = 0; k < 2; k++) {
         b->camera.eye[k] = at[k] - 5 * d[k] / length;
         b->camera.target[k] = at[k] + 12 * d[k] / length;

@@ -45,6 +45,12 @@ typedef struct noc_traffic_params {
     double headlamp;       /* lm, of one headlamp; default 700 */
     double tail_lamp;      /* cd, of one tail lamp straight back; default 8 */
     uint32_t seed;         /* another number, other cars */
+    /* The user's own bodies for cars: OBJ, PLY or glTF files, each as often as the others. z is up, the front looks
+     * along -y (a glTF's +z), metres; the lowest point stands on the road, the middle of the bounds is on the route.
+     * Lamps lie on meshes that are called "headlight" and "taillight" (or -lamp, and front-, rear-), else where they
+     * usually are on a car of these bounds. Emission of the files is not seen. Default none: bodies of ours */
+    noc_texts bodies;
+    double body_length; /* m that such a body is scaled to; 0, the default: it is as long as its file says, 1 to 30 m */
 } noc_traffic_params;
 
 #define NOC_TRAFFIC_DEFAULTS(set) set(spacing, 60) set(headlamp, 700) set(tail_lamp, 8) set(seed, 1)

@@ -28,6 +28,17 @@ typedef struct city_body {
     double light[3]; /* m */
 } city_body;
 
+/* ---- body.c: what the user's files of bodies hold, as a scene of their own, becomes a model of another one ---- */
+
+/* That material, of that class, which shines no more: the model's light is its own. -1 after reporting. */
+int city_body_material(noc_scene *to, const noc_scene *from, int index, noc_class cls);
+/* A corner of a triangle, at indices[i]. */
+void city_body_corner(const noc_scene *s, size_t i, double out[3]);
+/* move: the three rows of a transform, 4 columns each. */
+struct noc_scene_mesh;
+noc_status city_body_mesh(noc_scene *to, const noc_scene *from, const struct noc_scene_mesh *mesh, int model,
+                          int material, const double move[12]);
+
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
     double height, lumens, kelvin;

@@ -249,8 +249,10 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     print_others(out, args);
     print_lamps(out, args, &all);
     print_section(out, args, "windows", "window-", "Windows", false);
-    print_section(out, args, "traffic", "traffic-", "Traffic", args->import.tracks.count);
+    print_section(out, args, "traffic", "traffic-", "Traffic",
+                  args->import.tracks.count || args->import.cars.bodies.count);
     print_texts(out, &args->import.tracks, "tracks", "files whose lines are tracks of cars");
+    print_texts(out, &args->import.cars.bodies, "car-body", "bodies of your own: OBJ, PLY or glTF");
     print_rules(out);
     print_materials(out, &all);
     fputs("\n# The first one is used unless --camera NAME, --view or --eye says another.\n"

@@ -173,6 +173,8 @@ static const noc_option import_options[] = {
     REAL(P, cars.headlamp, "traffic-headlamp", "Traffic", 0, 1e5, "lm", "flux of one headlamp"),
     REAL(P, cars.tail_lamp, "traffic-tail-lamp", "Traffic", 0, 1e4, "cd", "intensity of one tail lamp"),
     UINT(P, cars.seed, "traffic-seed", "Traffic", "another number, other cars"),
+    TEXTS(P, cars.bodies, "car-body", "Traffic", "FILE", "OBJ, PLY or glTF that cars look like; repeatable"),
+    REAL(P, cars.body_length, "car-length", "Traffic", 0, 30, "m", "that it is scaled to; 0 = as its file says"),
     BOOL(P, isolate, "isolate", "Reading", "OBJ and map files are read in a process of its own, which can be stopped"),
     REAL(P, reader_time, "reader-time", "Reading", 0.1, 1e6, "s", "time such a file may take"),
     REAL(P, max_memory, "max-memory", "Reading", 0, 1e6, "GB", "memory that reading an input may take; 0 = 3/4 of all"),

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#define LONGEST 100 /* m between the axles of a car */
 #define LATEST 1e30 /* s: tracks whose times are nanoseconds make routes of a hundred thousand years and more */
 
 typedef struct kept_route {
@@ -10,10 +11,10 @@ typedef struct kept_route {
 } kept_route;
 
 typedef struct kept_car {
-    double start;
+    double start, axles;
     uint32_t instance, route;
 } kept_car;
-_Static_assert(sizeof(noc_scene_stop) == 24 && sizeof(kept_car) == 16, "they have no gaps");
+_Static_assert(sizeof(noc_scene_stop) == 24 && sizeof(kept_car) == 24, "they have no gaps");
 
 void noc_keep_traffic(noct_writer *w, const noc_scene *s) {
     noct_put_array(w, "stops", s->stops.data, s->stops.len, sizeof(*s->stops.data));
@@ -24,7 +25,7 @@ void noc_keep_traffic(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "cars");
     for (size_t i = 0; i < s->cars.len; i++) {
         const noc_scene_car *car = &s->cars.data[i];
-        noct_put(w, &(kept_car){ car->start, car->instance, car->route }, sizeof(kept_car));
+        noct_put(w, &(kept_car){ car->start, car->axles, car->instance, car->route }, sizeof(kept_car));
     }
     noct_end(w);
     noct_put_array(w, "time", &s->time, 1, sizeof(s->time));
@@ -70,9 +71,9 @@ noc_status noc_kept_traffic(noct_file *f, noc_scene *s) {
     for (size_t i = 0; i < cars; i++) {
         bool there = car[i].instance < s->instances.len && s->instances.data[car[i].instance].model;
         if (!there || car[i].route >= routes || !(fabs(car[i].start) <= LATEST) ||
-            (i && car[i].instance <= car[i - 1].instance))
+            !(car[i].axles > 0 && car[i].axles <= LONGEST) || (i && car[i].instance <= car[i - 1].instance))
             return noct_wrong(f, "car %zu is none", i);
-        s->cars.data[s->cars.len++] = (noc_scene_car){ car[i].instance, car[i].route, car[i].start };
+        s->cars.data[s->cars.len++] = (noc_scene_car){ car[i].instance, car[i].route, car[i].start, car[i].axles };
     }
     return f->status;
 }

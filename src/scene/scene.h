@@ -92,6 +92,7 @@ typedef struct noc_scene_route {
 typedef struct noc_scene_car {
     uint32_t instance, route;
     double start; /* s from the route's beginning, at time 0 */
+    double axles; /* m between its axles, both of which are on the route */
 } noc_scene_car;
 
 typedef struct noc_scene_group {
@@ -442,7 +443,7 @@ void noc_join_instance_bounds(const noc_scene *s, const noc_scene_instance *inst
 /* Before the first commit: a route, whose stops are copied. Its number, or -1 after reporting: no memory. */
 int noc_scene_add_route(noc_scene *s, const noc_scene_stop *stops, size_t count);
 /* An instance of the model that takes it, where it is at the scene's time. false after reporting. */
-bool noc_scene_add_car(noc_scene *s, int model, int route, double start);
+bool noc_scene_add_car(noc_scene *s, int model, int route, double start, double axles);
 void noc_car_forget(noc_scene *s, uint32_t instance); /* one that goes; it need not be a car's */
 
 /* Bytes that it takes, about. */

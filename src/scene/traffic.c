@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#define AXLES 2.6 /* m between a car's axles, both of which are on the route */
-
 int noc_scene_add_route(noc_scene *s, const noc_scene_stop *stops, size_t count) {
     size_t first = s->stops.len;
     if (!array_append(&s->stops, stops, count) || !array_push(&s->routes, (noc_scene_route){ first, count })) {
@@ -50,8 +48,8 @@ static void pose(const noc_scene *s, const noc_scene_car *car, double time, doub
     size_t i = stop_before(stops, route->count, second);
     double step = stops[i + 1].seconds - stops[i].seconds, t = step > 0 ? (second - stops[i].seconds) / step : 0;
     double along = stops[i].along + t * ((double)stops[i + 1].along - stops[i].along), front[3], rear[3], at[3], x[3];
-    place_along(stops, route->count, i, along + AXLES / 2, front);
-    place_along(stops, route->count, i, along - AXLES / 2, rear);
+    place_along(stops, route->count, i, along + car->axles / 2, front);
+    place_along(stops, route->count, i, along - car->axles / 2, rear);
     double flat = hypot(front[0] - rear[0], front[1] - rear[1]), length = 0;
     for (int k = 0; k < 3; k++) {
         at[k] = (front[k] + rear[k]) / 2;
@@ -74,8 +72,8 @@ static void pose(const noc_scene *s, const noc_scene_car *car, double time, doub
     set_column(m, 3, at);
 }
 
-bool noc_scene_add_car(noc_scene *s, int model, int route, double start) {
-    noc_scene_car car = { .route = (uint32_t)route, .start = start };
+bool noc_scene_add_car(noc_scene *s, int model, int route, double start, double axles) {
+    noc_scene_car car = { .route = (uint32_t)route, .start = start, .axles = axles };
     noc_instance instance = { .model = model };
     pose(s, &car, s->time, instance.transform);
     int index = noc_scene_add_instance(s, &instance);

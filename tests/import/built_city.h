@@ -87,7 +87,7 @@ static inline void add_car(noc_scene *s, int group, int profile) {
     stops[1].seconds = 3600e9; /* an hour, of a track that tells nanoseconds */
     int slow = noc_scene_add_route(s, stops, 2);
     for (int i = 0; i < 3; i++)
-        assert_true(noc_scene_add_car(s, model, i < 2 ? route : slow, 2.0 * i));
+        assert_true(noc_scene_add_car(s, model, i < 2 ? route : slow, 2.0 * i, 2.6));
     assert_int_equal(noc_scene_remove_instance(s, 1), NOC_OK);
 }
 

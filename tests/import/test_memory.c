@@ -38,7 +38,7 @@ static const char *write_text(const char *name, const char *text) {
 
 typedef struct import {
     const char *inputs[3]; /* files; NULL behind the last */
-    const char *crs, *scene_crs, *lamps, *columns, *body;
+    const char *crs, *scene_crs, *lamps, *columns, *body, *car;
     bool isolate, inspect, footprints, traffic;
     bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
 } import;
@@ -56,6 +56,8 @@ static noc_status run(const import *in, uint64_t number, bool and_later, bool *r
     params.isolate = in->isolate;
     params.footprints = in->footprints;
     params.lamp_body = in->body ? path_of(in->body) : NULL;
+    params.cars.bodies = (noc_texts){ { in->car ? path_of(in->car) : NULL }, in->car != NULL };
+    params.cars.body_length = 4;
     params.traffic = in->traffic ? NOC_SWITCH_ON : NOC_SWITCH_AUTO;
     if (in->lamps)
         params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
@@ -203,6 +205,10 @@ static void lamps(void **state) {
     refuse_each("Roads of Overpass", &(import){ { "overpass/roads.json" } });
 }
 
+static const char car[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                          "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                          "0 0 0\n2 0 0\n2 4 1\n0 4 1\n3 0 1 2\n3 0 2 3\n";
+
 static void maps(void **state) {
     if (!strstr(noc_features(), "gdal"))
         skip();
@@ -219,6 +225,8 @@ static void maps(void **state) {
     refuse_each("Cars",
                 &(import){ { "citygml/whole.gml", write_text("street.osm", street), write_text("trip.gpx", trip) },
                            .traffic = true });
+    refuse_each("A body for cars",
+                &(import){ { "citygml/whole.gml", write_text("trip.gpx", trip) }, .car = write_text("car.ply", car) });
     refuse_each("GeoTIFF", &(import){ { "terrain/floats.tif" } });
     refuse_each("GeoTIFF by the helper", &(import){ { "terrain/floats.tif" }, .isolate = true });
     refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });

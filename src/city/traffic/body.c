@@ -1,14 +1,9 @@
-/* What cars look like, and how they shine: bodies of our own making, with two headlamps and two tail lamps. A model's x
- * is forward, y left, z up, and its origin lies on the ground between the axles. */
+/* What cars look like: bodies of our own making, with their lamps. A model's x is forward, y left, z up, and its origin
+ * lies on the ground between the axles. */
 #include "city/city.h"
 #include "city/traffic/traffic.h"
 
 #include <math.h>
-
-#define LAMP_RADIUS 0.06 /* m */
-#define LAMP_CLEAR 0.02  /* m before the body */
-#define HALOGEN 3200.0   /* K */
-#define LED 5600.0       /* K */
 
 typedef struct part {
     NOC_ARRAY(double) xyz;
@@ -70,19 +65,12 @@ static const struct {
     float paint[3];
     double kelvin;
     double share; /* of the cars */
-} kinds[TRAFFIC_MODELS] = {
-    { 0, { .03f, .03f, .035f }, LED, .2 },     { 0, { .45f, .45f, .46f }, HALOGEN, .18 },
-    { 0, { .62f, .62f, .60f }, LED, .17 },     { 0, { .16f, .17f, .18f }, HALOGEN, .13 },
-    { 0, { .05f, .09f, .24f }, LED, .1 },      { 0, { .30f, .03f, .03f }, HALOGEN, .08 },
-    { 1, { .62f, .62f, .60f }, HALOGEN, .09 }, { 1, { .25f, .26f, .28f }, LED, .05 },
+} kinds[] = {
+    { 0, { .03f, .03f, .035f }, TRAFFIC_LED, .2 },     { 0, { .45f, .45f, .46f }, TRAFFIC_HALOGEN, .18 },
+    { 0, { .62f, .62f, .60f }, TRAFFIC_LED, .17 },     { 0, { .16f, .17f, .18f }, TRAFFIC_HALOGEN, .13 },
+    { 0, { .05f, .09f, .24f }, TRAFFIC_LED, .1 },      { 0, { .30f, .03f, .03f }, TRAFFIC_HALOGEN, .08 },
+    { 1, { .62f, .62f, .60f }, TRAFFIC_HALOGEN, .09 }, { 1, { .25f, .26f, .28f }, TRAFFIC_LED, .05 },
 };
-
-int traffic_model(double number) {
-    int i = 0;
-    while (i + 1 < TRAFFIC_MODELS && number >= kinds[i].share)
-        number -= kinds[i++].share;
-    return i;
-}
 
 /* ---- bodies ---- */
 
@@ -176,88 +164,38 @@ static bool add_body(noc_scene *scene, int model, const shape *s, const int mate
     return good;
 }
 
-/* ---- lamps ---- */
+/* ---- models ---- */
 
-/* The passing beam, turned over for driving on the left: its number in the scene, 0 after reporting. */
-static int add_beam(noc_scene *scene, noc_driving_side side) {
-    noc_profile *right = NULL, *left = NULL;
-    if (noc_profile_builtin(NULL, "low-beam", &right)) { /* there is one of that name, so it is memory */
-        noc_scene_out_of_memory(scene);
-        return 0;
+static bool add_kind(noc_scene *scene, int kind, int material[PARTS], const noc_traffic_params *params, int beam,
+                     traffic_models *models) {
+    const shape *s = &shapes[kinds[kind].shape];
+    noc_material paint = { .f0 = .05f, .roughness = .2f, .cls = NOC_CLASS_VEHICLE };
+    traffic_lamp_places at;
+    memcpy(paint.albedo, kinds[kind].paint, sizeof(paint.albedo));
+    material[PAINT] = noc_scene_add_material(scene, &paint);
+    int model = material[PAINT] < 0 ? -1 : noc_scene_add_model(scene, s->name);
+    for (int side = 0; side < 2; side++) {
+        double y = (side ? 1 : -1) * s->lamps_apart;
+        memcpy(at.head[side], (double[]){ s->headlamp[0], y, s->headlamp[1] }, sizeof(at.head[side]));
+        memcpy(at.tail[side], (double[]){ s->tail_lamp[0], y, s->tail_lamp[1] }, sizeof(at.tail[side]));
     }
-    int number = 0;
-    if (side == NOC_DRIVE_RIGHT) {
-        number = noc_scene_add_profile(scene, right);
-    } else {
-        noc_profile_info info;
-        noc_profile_get_info(right, &info);
-        size_t row = (size_t)info.gamma_count;
-        double *cd = noc_alloc((size_t)info.c_count * row * sizeof(*cd));
-        for (int i = 0; i < info.c_count && cd; i++) /* C 0 is to the right, C 180 to the left */
-            memcpy(cd + (size_t)i * row, info.cd + (size_t)((3 * info.c_count / 2 - i) % info.c_count) * row,
-                   row * sizeof(*cd));
-        const noc_profile_params p = { "low-beam", info.c_count, info.gamma_count, info.c, info.gamma, cd, 0 };
-        if (!cd || noc_profile_create(NULL, &p, &left))
-            noc_scene_out_of_memory(scene);
-        else
-            number = noc_scene_add_profile(scene, left);
-        free(cd);
-    }
-    noc_profile_destroy(right);
-    noc_profile_destroy(left);
-    return NOC_MAX(number, 0);
+    if (model < 0 || !add_body(scene, model, s, material) ||
+        !traffic_lamps(scene, model, &at, params, beam, kinds[kind].kelvin))
+        return false;
+    const traffic_model made = { model, kinds[kind].share, s->axle[0] - s->axle[1] };
+    if (array_push(&models->of, made))
+        return true;
+    noc_scene_out_of_memory(scene);
+    return false;
 }
 
-static bool add_lamps(noc_scene *scene, int model, const shape *s, const noc_traffic_params *p, int beam,
-                      double kelvin) {
-    float white[3];
-    bool good = true;
-    /* a Lambertian disc of I cd is of I / area cd/m2; of red its Rec.709 primary, whose luminance is 0.2126 */
-    const float red = (float)(p->tail_lamp / (M_PI * LAMP_RADIUS * LAMP_RADIUS) / .2126);
-    int group = noc_scene_group_named(scene, "cars");
-    noc_kelvin_rgb(kelvin, white);
-    for (int side = -1; side <= 1 && good; side += 2) {
-        noc_light head = { .kind = NOC_LIGHT_DISC,
-                           .position = { s->headlamp[0] + LAMP_CLEAR, side * s->lamps_apart, s->headlamp[1] },
-                           .direction = { 1, 0, 0 },
-                           .radius = LAMP_RADIUS,
-                           .name = "headlamp",
-                           .model = model,
-                           .group = group,
-                           .profile = beam,
-                           .c0 = { 0, -1, 0 } };
-        noc_light tail = { .kind = NOC_LIGHT_DISC,
-                           .position = { s->tail_lamp[0] - LAMP_CLEAR, side * s->lamps_apart, s->tail_lamp[1] },
-                           .direction = { -1, 0, 0 },
-                           .radius = LAMP_RADIUS,
-                           .emission = { red, 0, 0 },
-                           .name = "tail lamp",
-                           .model = model,
-                           .group = group };
-        for (int k = 0; k < 3; k++)
-            head.emission[k] = (float)p->headlamp * white[k];
-        good = (p->headlamp <= 0 || noc_scene_add_light(scene, &head) >= 0) &&
-               (p->tail_lamp <= 0 || noc_scene_add_light(scene, &tail) >= 0);
-    }
-    return good;
-}
-
-bool traffic_models(noc_scene *scene, const noc_traffic_params *params, int models[TRAFFIC_MODELS]) {
+bool traffic_our_models(noc_scene *scene, const noc_traffic_params *params, traffic_models *models) {
     const noc_material glass = { { .02f, .02f, .025f }, .06f, .1f, { 0 }, false, NOC_CLASS_VEHICLE };
     const noc_material rubber = { { .03f, .03f, .03f }, 0, 1, { 0 }, false, NOC_CLASS_VEHICLE };
     int material[PARTS] = { 0, noc_scene_add_material(scene, &glass), noc_scene_add_material(scene, &rubber) };
-    int beam = params->headlamp > 0 ? add_beam(scene, params->side) : 1;
-    if (material[GLASS] < 0 || material[TYRE] < 0 || !beam)
-        return false;
-    for (int i = 0; i < TRAFFIC_MODELS; i++) {
-        const shape *s = &shapes[kinds[i].shape];
-        noc_material paint = { .f0 = .05f, .roughness = .2f, .cls = NOC_CLASS_VEHICLE };
-        memcpy(paint.albedo, kinds[i].paint, sizeof(paint.albedo));
-        material[PAINT] = noc_scene_add_material(scene, &paint);
-        models[i] = material[PAINT] < 0 ? -1 : noc_scene_add_model(scene, s->name);
-        if (models[i] < 0 || !add_body(scene, models[i], s, material) ||
-            !add_lamps(scene, models[i], s, params, beam, kinds[i].kelvin))
-            return false;
-    }
-    return true;
+    int beam = params->headlamp > 0 ? traffic_beam(scene, params->side) : 1;
+    bool good = material[GLASS] >= 0 && material[TYRE] >= 0 && beam;
+    for (size_t i = 0; i < NOC_COUNT(kinds) && good; i++)
+        good = add_kind(scene, (int)i, material, params, beam, models);
+    return good;
 }

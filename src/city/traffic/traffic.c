@@ -12,8 +12,7 @@ struct city_traffic {
     noc_scene *scene;
     const noc_traffic_params *params;
     route_maker route;
-    int models[TRAFFIC_MODELS];
-    bool have_models;
+    traffic_models models; /* empty: those of ours, once there is a car */
 };
 
 city_traffic *city_traffic_create(noc_scene *scene, const noc_traffic_params *params) {
@@ -28,8 +27,10 @@ city_traffic *city_traffic_create(noc_scene *scene, const noc_traffic_params *pa
 }
 
 void city_traffic_destroy(city_traffic *t) {
-    if (t)
+    if (t) {
         route_free(&t->route);
+        array_free(&t->models.of);
+    }
     free(t);
 }
 
@@ -40,11 +41,26 @@ uint64_t traffic_hash(const char *id, uint32_t seed) {
     return city_window_hash(hash, seed);
 }
 
+noc_status city_traffic_body(city_traffic *t, const noc_scene *from, const char *name) {
+    return traffic_own_models(t->scene, from, name, t->params, &t->models);
+}
+
+/* By a number of 0..1. */
+static const traffic_model *choose(const traffic_models *models, double number) {
+    double all = 0;
+    size_t i = 0;
+    for (size_t k = 0; k < models->of.len; k++)
+        all += models->of.data[k].share;
+    for (number *= all; i + 1 < models->of.len && number >= models->of.data[i].share; i++)
+        number -= models->of.data[i].share;
+    return &models->of.data[i];
+}
+
 bool traffic_add_car(city_traffic *t, int route, uint64_t hash, double start) {
-    if (!t->have_models && !traffic_models(t->scene, t->params, t->models))
+    if (!t->models.of.len && !traffic_our_models(t->scene, t->params, &t->models))
         return false;
-    t->have_models = true;
-    return noc_scene_add_car(t->scene, t->models[traffic_model(city_window_number(hash, 1))], route, start);
+    const traffic_model *m = choose(&t->models, city_window_number(hash, 1));
+    return noc_scene_add_car(t->scene, m->model, route, start, m->axles);
 }
 
 noc_status traffic_failed(const city_traffic *t) { return t->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT; }

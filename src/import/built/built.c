@@ -47,8 +47,8 @@ static const built_part parts[] = {
 uint64_t built_layout(void) {
     const uint64_t numbers[] = { sizeof(noc_light_record), sizeof(noc_scene_group), NOC_CLASS_COUNT,
                                  NOC_LIGHT_KIND_COUNT,     NOC_WINDOW_KIND_COUNT,   NOC_WALL_VERDICT_COUNT,
-                                 LIGHT_PROFILE_BITS,       sizeof(noc_scene_stop),  NOC_COUNT(parts),
-                                 built_report_layout() };
+                                 LIGHT_PROFILE_BITS,       sizeof(noc_scene_stop),  sizeof(noc_scene_car),
+                                 NOC_COUNT(parts),         built_report_layout() };
     return noct_sum(numbers, sizeof(numbers));
 }
 

@@ -1,5 +1,4 @@
-/* The user's own body for lamps: an OBJ, PLY or glTF that becomes a model of the scene, with the place where it shines.
- */
+/* The user's own bodies, from OBJ, PLY and glTF: of lamps, with the place where they shine, and of cars (cars.c). */
 #include "import/load/load.h"
 #include "city/city.h"
 #include "import/remote/remote.h"
@@ -11,7 +10,8 @@
 
 typedef struct reading_body {
     importer *im;
-    const char *path;
+    const char *path, *option, *what;
+    double done;    /* for progress */
     noc_scene *own; /* what the file holds */
     geo_issues *issues;
 } reading_body;
@@ -19,10 +19,10 @@ typedef struct reading_body {
 static noc_status as_they_are(void *ctx, double *xyz, size_t count) { return NOC_OK; }
 
 static bool on_progress(void *ctx, double done) {
-    importer *im = ctx;
+    const reading_body *b = ctx;
+    importer *im = b->im;
     const noc_progress *progress = &im->params->progress;
-    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, "lamps",
-                                                                            import_done(im, DONE_LAMPS, LAMPS_PLACED)));
+    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, b->what, b->done));
     return !im->cancelled;
 }
 
@@ -44,13 +44,13 @@ static noc_status read_it(reading_body *b) {
     const noc_reader *reader = status ? NULL : find_reader(noc_readers, head, size);
     bool mesh = reader && reader->read_mesh;
     if (!status && !mesh)
-        status = noc_error(b->im->log, NOC_ERR_FORMAT, "%s: --lamp-body is an OBJ, a PLY or a glTF", b->path);
+        status = noc_error(b->im->log, NOC_ERR_FORMAT, "%s: %s is an OBJ, a PLY or a glTF", b->path, b->option);
     else if (!status && reader->missing)
         status = noc_error(b->im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", b->path, reader->name,
                            reader->missing);
     status = status ? status : noc_stream_rewind(stream);
     if (!status && reader->foreign && params->isolate && reader->foreign(head, size)) {
-        geo_sink sink = { .ctx = b->im, .log = b->im->log, .issues = b->issues, .progress = on_progress };
+        geo_sink sink = { .ctx = b, .log = b->im->log, .issues = b->issues, .progress = on_progress };
         remote_result result = { 0 };
         status = remote_read(reader, b->path, params, &sink, &parts, &result);
     } else if (!status) {
@@ -61,9 +61,40 @@ static noc_status read_it(reading_body *b) {
     return status;
 }
 
-/* ---- from the file's scene to a model of the lamps' ---- */
+noc_scene *body_read(importer *im, const char *path, const char *option, const char *what, double done,
+                     noc_status *status) {
+    reading_body b = { .im = im,
+                       .path = path,
+                       .option = option,
+                       .what = what,
+                       .done = done,
+                       .own = noc_scene_create(im->log),
+                       .issues = geo_issues_create() };
+    *status = b.own && b.issues ? NOC_OK : NOC_ERR_MEMORY;
+    if (b.own && !b.issues)
+        noc_no_memory(im->log, path);
+    *status = *status ? *status : read_it(&b);
+    if (!*status && b.own->no_memory)
+        *status = NOC_ERR_MEMORY;
+    if (!*status && geo_issues_refused(b.issues))
+        *status = noc_no_memory(im->log, path);
+    for (size_t i = 0; i < geo_issues_count(b.issues) && !*status; i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t count;
+        if (!geo_issues_get(b.issues, i, &reason, &repaired, &count, &examples))
+            *status = noc_no_memory(im->log, path);
+        else if (geo_issues_kind(b.issues, i) != GEO_SPARED)
+            noc_warn(im->log, "%s: %zu x %s", path, count, reason);
+    }
+    geo_issues_destroy(b.issues);
+    if (!*status)
+        return b.own;
+    noc_scene_destroy(b.own);
+    return NULL;
+}
 
-static const float *corner(const noc_scene *s, size_t i) { return &s->positions.data[3 * (size_t)s->indices.data[i]]; }
+/* ---- lamps ---- */
 
 /* The place of what is called "light": the middle of a mesh, else a light of the file. False: there is none. */
 static bool find_light(const noc_scene *s, double at[3]) {
@@ -72,11 +103,14 @@ static bool find_light(const noc_scene *s, double at[3]) {
         double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
         if (!mesh->name || strcasecmp(mesh->name, LIGHT) != 0 || !mesh->triangle_count)
             continue;
-        for (size_t i = 3 * mesh->first_triangle; i < 3 * (mesh->first_triangle + mesh->triangle_count); i++)
+        for (size_t i = 3 * mesh->first_triangle; i < 3 * (mesh->first_triangle + mesh->triangle_count); i++) {
+            double p[3];
+            city_body_corner(s, i, p);
             for (int k = 0; k < 3; k++) {
-                lo[k] = NOC_MIN(lo[k], corner(s, i)[k]);
-                hi[k] = NOC_MAX(hi[k], corner(s, i)[k]);
+                lo[k] = NOC_MIN(lo[k], p[k]);
+                hi[k] = NOC_MAX(hi[k], p[k]);
             }
+        }
         for (int k = 0; k < 3; k++)
             at[k] = (lo[k] + hi[k]) / 2;
         return true;
@@ -86,78 +120,36 @@ static bool find_light(const noc_scene *s, double at[3]) {
     return s->lights.len > 0;
 }
 
-static noc_status add_mesh(noc_scene *to, const noc_scene *from, const noc_scene_mesh *mesh, int model) {
-    size_t corners = 3 * mesh->triangle_count;
-    noc_material material = from->materials.data[mesh->material];
-    material.cls = NOC_CLASS_LAMP;
-    memset(material.emission, 0, sizeof(material.emission)); /* the lamp's light is its own */
-    double *xyz = noc_alloc((corners + 1) * 3 * sizeof(*xyz));
-    uint32_t *indices = noc_alloc((corners + 1) * sizeof(*indices));
-    noc_status status = xyz && indices ? NOC_OK : noc_no_memory(to->log, "import");
-    for (size_t i = 0; i < corners && !status; i++) {
-        indices[i] = (uint32_t)i;
-        for (int k = 0; k < 3; k++)
-            xyz[3 * i + (size_t)k] = corner(from, 3 * mesh->first_triangle + i)[k];
-    }
-    int index = status ? -1 : noc_scene_add_material(to, &material);
-    const noc_mesh one = { .vertex_count = corners,
-                           .positions = xyz,
-                           .triangle_count = mesh->triangle_count,
-                           .indices = indices,
-                           .material = index,
-                           .model = model };
-    if (!status && (index < 0 || noc_scene_add_mesh(to, &one) < 0))
-        status = to->no_memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
-    free(xyz);
-    free(indices);
-    return status;
-}
-
-static noc_status make_model(const reading_body *b, city_body *body) {
-    noc_scene *to = b->im->scene;
+static noc_status make_model(importer *im, const noc_scene *from, const char *path, city_body *body) {
+    const double as_it_is[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    noc_scene *to = im->scene;
     bool any = false;
     noc_status status = NOC_OK;
-    body->whole = find_light(b->own, body->light);
+    body->whole = find_light(from, body->light);
     if (body->whole && !(body->light[2] > 0.1))
-        return noc_error(b->im->log, NOC_ERR_FORMAT,
-                         "%s: its light lies %.3g m above its foot: a lamp stands on 0, and z is up (--obj-up)",
-                         b->path, body->light[2]);
+        return noc_error(im->log, NOC_ERR_FORMAT,
+                         "%s: its light lies %.3g m above its foot: a lamp stands on 0, and z is up (--obj-up)", path,
+                         body->light[2]);
     body->model = noc_scene_add_model(to, "lamp");
     if (body->model < 0)
         return NOC_ERR_MEMORY;
-    for (size_t m = 0; m < b->own->meshes.len && !status; m++) {
-        const noc_scene_mesh *mesh = &b->own->meshes.data[m];
+    for (size_t m = 0; m < from->meshes.len && !status; m++) {
+        const noc_scene_mesh *mesh = &from->meshes.data[m];
         if (!mesh->triangle_count || (mesh->name && !strcasecmp(mesh->name, LIGHT)))
             continue;
-        status = add_mesh(to, b->own, mesh, body->model);
+        int material = city_body_material(to, from, mesh->material, NOC_CLASS_LAMP);
+        status = city_body_mesh(to, from, mesh, body->model, material, as_it_is);
         any = true;
     }
     if (!status && !any)
-        status = noc_error(b->im->log, NOC_ERR_FORMAT, "%s: the lamp's body has no triangles", b->path);
+        status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the lamp's body has no triangles", path);
     return status;
 }
 
 noc_status body_load(importer *im, const char *path, struct city_body *body) {
-    reading_body b = { .im = im, .path = path, .own = noc_scene_create(im->log), .issues = geo_issues_create() };
-    noc_status status = b.own && b.issues ? NOC_OK : NOC_ERR_MEMORY;
-    if (b.own && !b.issues)
-        noc_no_memory(im->log, path);
-    status = status ? status : read_it(&b);
-    if (!status && b.own->no_memory)
-        status = NOC_ERR_MEMORY;
-    if (!status && geo_issues_refused(b.issues))
-        status = noc_no_memory(im->log, path);
-    status = status ? status : make_model(&b, body);
-    for (size_t i = 0; i < geo_issues_count(b.issues) && !status; i++) {
-        const char *reason, *examples;
-        bool repaired;
-        size_t count;
-        if (!geo_issues_get(b.issues, i, &reason, &repaired, &count, &examples))
-            status = noc_no_memory(im->log, path);
-        else if (geo_issues_kind(b.issues, i) != GEO_SPARED)
-            noc_warn(im->log, "%s: %zu x %s", path, count, reason);
-    }
-    geo_issues_destroy(b.issues);
-    noc_scene_destroy(b.own);
+    noc_status status;
+    noc_scene *own = body_read(im, path, "--lamp-body", "lamps", import_done(im, DONE_LAMPS, LAMPS_PLACED), &status);
+    status = status ? status : make_model(im, own, path, body);
+    noc_scene_destroy(own);
     return status;
 }

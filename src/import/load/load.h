@@ -382,7 +382,12 @@ geo_triangles *area_kept(importer *im, noc_class cls);
 /* Surfaces of roads and areas, once the ground is there, where params want those. */
 noc_status roads_pave(importer *im);
 
-/* body.c: the user's own body for lamps becomes a model of the scene. */
+/* body.c: the user's own bodies. */
+/* What the file of that option holds, as a scene of its own, z up; what and done: of progress. NULL: *status says why
+ * not. */
+noc_scene *body_read(importer *im, const char *path, const char *option, const char *what, double done,
+                     noc_status *status);
+/* That for lamps becomes a model of the scene. */
 struct city_body;
 noc_status body_load(importer *im, const char *path, struct city_body *body);
 
@@ -396,7 +401,7 @@ void road_lamps_street(importer *im, const struct city_roads *roads);
 /* One on a bridge stands on the line between the ground at its ends. */
 void road_lamps_raise(const importer *im, pending_lamp *p);
 
-/* tracks.c */
+/* cars.c: tracks of cars, and what cars look like. */
 noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track);
 noc_status traffic_add(importer *im); /* cars along them */
 

@@ -1,4 +1,4 @@
-/* Tracks of cars are kept until all that they lie on is in. */
+/* Cars: their tracks are kept until all that they lie on is in. */
 #include "import/load/load.h"
 #include "city/traffic/traffic.h"
 
@@ -28,12 +28,28 @@ noc_status track_keep(importer *im, input *in, size_t index, const geo_track *tr
     return im->tracks.len % 1024 ? NOC_OK : take_affords(im, in, 0);
 }
 
+/* The user's own. */
+static noc_status add_bodies(importer *im, city_traffic *traffic) {
+    const noc_texts *bodies = &im->params->cars.bodies;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < bodies->count && !status; i++) {
+        noc_scene *from = body_read(im, bodies->text[i], "--car-body", "cars", 0, &status);
+        status = status ? status : city_traffic_body(traffic, from, bodies->text[i]);
+        noc_scene_destroy(from);
+    }
+    return status;
+}
+
 noc_status traffic_add(importer *im) {
     size_t roads = im->params->traffic == NOC_SWITCH_ON ? im->roads.len : 0, cars;
-    if (!im->tracks.len && !roads)
+    if (!im->tracks.len && !roads) {
+        if (im->params->cars.bodies.count)
+            noc_warn(im->log, "--car-body: the inputs hold no tracks of cars, and cars along roads are asked for by "
+                              "--traffic");
         return NOC_OK;
+    }
     city_traffic *traffic = city_traffic_create(im->scene, &im->params->cars);
-    noc_status status = traffic ? NOC_OK : NOC_ERR_MEMORY;
+    noc_status status = traffic ? add_bodies(im, traffic) : NOC_ERR_MEMORY;
     for (size_t i = 0; i < im->tracks.len && !status; i++) {
         const pending_track *p = &im->tracks.data[i];
         status = city_traffic_follow(traffic, &p->track, im->inputs[p->input].issues, &cars);
