@@ -97,10 +97,25 @@ static noc_status begin_object(void *ctx, const geo_object *object) {
     return NOC_OK;
 }
 
+static noc_status appearance(void *ctx, const geo_appearance *a, uint32_t *number) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE((unsigned)a->wrap <= NOC_WRAP_CLAMP && a->f0 <= 1 && a->roughness <= 1);
+    for (int k = 0; k < 3 && a->coloured; k++)
+        FUZZ_REQUIRE(a->albedo[k] >= 0 && a->albedo[k] <= 1);
+    s->sum += a->image ? (double)strlen(a->image) : 0;
+    *number = ++s->looks;
+    return NOC_OK;
+}
+
 static noc_status polygon(void *ctx, const geo_polygon *p) {
     fuzz_sink *s = ctx;
     FUZZ_REQUIRE(s->in_object && s->told && p->ring_count && p->cls < NOC_CLASS_COUNT);
+    FUZZ_REQUIRE(p->appearance <= s->looks && (p->appearance || !p->uv));
     const double *xyz = p->xyz;
+    const float *uv = p->uv;
+    for (size_t r = 0; r < p->ring_count && uv; r++)
+        for (size_t i = 0; i < 2 * p->ring_size[r]; i++)
+            s->sum += isfinite(*uv) ? (double)*uv : 0, uv++;
     for (size_t r = 0; r < p->ring_count; r++) {
         FUZZ_REQUIRE(p->ring_size[r] >= 3);
         for (size_t i = 0; i < 3 * p->ring_size[r]; i++)
@@ -188,6 +203,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .log = log,
                           .issues = geo_issues_create(),
                           .crs = crs,
+                          .appearance = appearance,
                           .begin_object = begin_object,
                           .polygon = polygon,
                           .end_object = end_object,

@@ -51,7 +51,8 @@ char *fuzz_file(const char *name, fuzz_part content);
 typedef struct fuzz_sink {
     geo_sink sink;
     bool in_object, told, lat_first;
-    double sum; /* of all that was handed over, so that the sanitizers see it read */
+    uint32_t looks; /* that were numbered */
+    double sum;     /* of all that was handed over, so that the sanitizers see it read */
 } fuzz_sink;
 void fuzz_sink_start(fuzz_sink *s, noc_log *log);
 void fuzz_sink_end(fuzz_sink *s);

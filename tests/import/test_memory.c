@@ -145,6 +145,7 @@ static const char street[] = "<osm version='0.6'><node id='1' lat='48.09505' lon
 
 static void citygml(void **state) {
     refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
+    refuse_each("CityGML with appearances", &(import){ { "citygml/looks.gml" } });
     refuse_each("CityGML with references between objects", &(import){ { write_text("links.gml", links) } });
     refuse_each("CityGML, zip, another CRS", &(import){ { "citygml/old.zip" }, .scene_crs = "EPSG:25832" });
     refuse_each("CityGML with a CRS that is not understood",
@@ -154,6 +155,8 @@ static void citygml(void **state) {
 
 static void cityjson(void **state) {
     refuse_each("CityJSON", &(import){ { "cityjson/whole.json" }, .all = true });
+    refuse_each("CityJSON with appearances", &(import){ { "cityjson/looks.json" } });
+    refuse_each("CityJSONSeq with appearances", &(import){ { "cityjson/looks.jsonl" } });
     refuse_each("CityJSONSeq", &(import){ { "cityjson/lines.jsonl" }, .scene_crs = "EPSG:25832" });
 }
 

@@ -1,38 +1,5 @@
 /* Appearances of CityGML: which surfaces get which image and colour, the right way round, and what is of no use. */
-#include "../test.h"
-
-#include "base/base.h"
-#include "scene/scene.h"
-
-#include <nocturne/image.h>
-#include <nocturne/import.h>
-
-#include <math.h>
-#include <sys/stat.h>
-
-static char folder[] = "/tmp/nocturne-textures-XXXXXX", path[64];
-
-static void write_file(const char *name, const char *text) {
-    char at[96];
-    snprintf(at, sizeof(at), "%s/%s", folder, name);
-    FILE *f = fopen(at, "wb");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0 && !fclose(f));
-}
-
-/* 2 x 2 pixels: white at the top left, all else black. */
-static void write_image(const char *name) {
-    char at[96];
-    noc_image *image = noc_image_create(2, 2, NULL);
-    noc_display_params linear = noc_display_default_params();
-    snprintf(at, sizeof(at), "%s/%s", folder, name);
-    image->rgb[0] = image->rgb[1] = image->rgb[2] = 100;
-    linear.auto_exposure = false;
-    linear.tonemap = NOC_TONEMAP_LINEAR;
-    linear.ev100 = 0;
-    assert_int_equal(noc_image_write(image, at, &linear, NULL, NULL), NOC_OK);
-    noc_image_destroy(image);
-}
+#include "looks.h"
 
 #define WALL(id, x)                                                                                                    \
     "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing gml:id='" id "r'><gml:posList "     \
@@ -58,44 +25,6 @@ static void write_image(const char *name) {
     "</app:diffuseColor><app:target>#p2</app:target></app:X3DMaterial></app:surfaceDataMember>"
 #define TAIL "</app:Appearance></app:appearanceMember></CityModel>"
 
-static noc_scene *load(bool textures, noc_report **report) {
-    const char *paths[] = { path };
-    noc_import_params p = noc_import_default_params();
-    p.textures = textures;
-    p.windows = NOC_SWITCH_OFF;
-    p.infer_lamps = NOC_SWITCH_OFF;
-    noc_scene *scene = noc_scene_create(NULL);
-    assert_int_equal(noc_scene_load(scene, paths, 1, &p, report), NOC_OK);
-    return scene;
-}
-
-/* How often the report's file has such a line. */
-static size_t told(const noc_report *report, const char *reason) {
-    const noc_report_file *f = noc_report_get_file(report, 0);
-    for (size_t i = 0; i < f->line_count; i++)
-        if (strstr(f->lines[i].reason, reason))
-            return f->lines[i].count;
-    return 0;
-}
-
-static bool is_wall(const noc_scene *s, const noc_scene_mesh *m) {
-    return s->materials.data[m->material].cls == NOC_CLASS_WALL;
-}
-
-/* The scene's origin lies where it will: walls are counted from the one at the least x. */
-static const noc_scene_mesh *wall_number(const noc_scene *s, int number) {
-    float least = INFINITY;
-    for (size_t i = 0; i < s->meshes.len; i++)
-        for (size_t v = s->meshes.data[i].first_vertex; v < noc_mesh_end_vertex(s, i); v++)
-            least = is_wall(s, &s->meshes.data[i]) ? fminf(least, s->positions.data[3 * v]) : least;
-    for (size_t i = 0; i < s->meshes.len; i++)
-        for (size_t v = s->meshes.data[i].first_vertex; v < noc_mesh_end_vertex(s, i); v++)
-            if (is_wall(s, &s->meshes.data[i]) && s->positions.data[3 * v] == least + (float)number)
-                return &s->meshes.data[i];
-    fail_msg("there is no wall %d", number);
-    return NULL;
-}
-
 static void test_citygml(void **state) {
     (void)state;
     write_image("sub.png");
@@ -103,30 +32,25 @@ static void test_citygml(void **state) {
                HEAD TEXTURE("sub.png", "p1r", SQUARE) TEXTURE("gone.jpg", "p2r", SQUARE)
                    TEXTURE("sub.png", "p3r", "0 0 1 0 1 1") TEXTURE("../../etc/passwd", "p4r", SQUARE) MATERIAL TAIL);
     noc_report *report;
-    noc_scene *s = load(true, &report);
-    const noc_scene_mesh *wall = wall_number(s, 0);
-    const noc_material *m = &s->materials.data[wall->material];
-    assert_true(m->texture == 1 && wall->uv && m->albedo[0] == 1 && s->textures.len == 1);
-    for (size_t v = 0; v < 4; v++) { /* u along y, v upwards */
-        const float *xyz = s->positions.data + 3 * (wall->first_vertex + v), *uv = s->uv.data + 2 * (wall->uv - 1 + v);
-        const float *low = s->positions.data + 3 * (size_t)wall->first_vertex;
-        assert_true(uv[0] == (xyz[1] > low[1]) && uv[1] == (xyz[2] > low[2]));
-    }
+    noc_scene *s = load("city.gml", true, &report);
+    const noc_material *m = wall_material(s, 0);
+    assert_true(m->texture == 1 && m->albedo[0] == 1 && s->textures.len == 1);
+    expect_upright(s, 0);
     const uint32_t *texel = s->texels.data + TEXTURE_HEAD;
     assert_true((texel[0] & 1023) > (texel[1] & 1023) && texel[1] == texel[2] && texel[1] == texel[3]);
     /* the material stands in for the image that is not there: sRGB 0.5 is 0.214 */
-    m = &s->materials.data[wall_number(s, 1)->material];
+    m = wall_material(s, 1);
     assert_true(m->texture == 0 && fabsf(m->albedo[1] - 0.2140f) < 1e-3f);
     assert_true(fabsf(m->albedo[0] - 0.9f) < 1e-6f && fabsf(m->albedo[2] - 0.02f) < 1e-6f && m->roughness == 1);
-    assert_int_equal(s->materials.data[wall_number(s, 2)->material].texture, 0);
-    assert_int_equal(s->materials.data[wall_number(s, 3)->material].texture, 0);
+    assert_int_equal(wall_material(s, 2)->texture, 0);
+    assert_int_equal(wall_material(s, 3)->texture, 0);
     assert_int_equal(told(report, "image that is not there"), 1);
     assert_int_equal(told(report, "image outside of the file's folder"), 1);
     assert_int_equal(told(report, "do not fit their ring"), 1);
     assert_int_equal(noc_report_get_file(report, 0)->images, 1);
     noc_report_destroy(report);
     noc_scene_destroy(s);
-    s = load(false, &report);
+    s = load("city.gml", false, &report);
     assert_true(!s->textures.len && !s->uv.len && !told(report, "image"));
     noc_report_destroy(report);
     noc_scene_destroy(s);
@@ -138,7 +62,7 @@ static void test_broken(void **state) {
     write_file("other.tif", "II*");
     write_file("city.gml", HEAD TEXTURE("broken.jpg", "p1r", SQUARE) TEXTURE("other.tif", "p2r", SQUARE) TAIL);
     noc_report *report;
-    noc_scene *s = load(true, &report);
+    noc_scene *s = load("city.gml", true, &report);
     assert_true(!s->textures.len && noc_report_get_file(report, 0)->images == 0);
     assert_int_equal(told(report, "image of a format that is not read") + told(report, "broken image"), 2);
     for (size_t i = 0; i < s->materials.len; i++)
@@ -151,6 +75,7 @@ static void test_broken(void **state) {
 static void test_many_materials(void **state) {
     (void)state;
     enum { MATERIALS = 100000 };
+    const char *path = in_folder("city.gml");
     FILE *f = fopen(path, "wb");
     assert_true(f && fputs(HEAD "<app:surfaceDataMember>", f) >= 0);
     for (int i = 0; i < MATERIALS; i++)
@@ -168,15 +93,10 @@ static void test_many_materials(void **state) {
 }
 
 int main(void) {
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof(path), "%s/city.gml", folder);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_citygml),
         cmocka_unit_test(test_broken),
         cmocka_unit_test(test_many_materials),
     };
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    char command[96];
-    snprintf(command, sizeof(command), "rm -r %s", folder);
-    return system(command) ? 1 : failed;
+    return run_looks(tests, NOC_COUNT(tests));
 }

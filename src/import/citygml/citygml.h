@@ -254,6 +254,7 @@ typedef struct cg_looks {
     noc_map pairs;     /* material and texture -> number that the sink gave */
     /* of the one being read */
     bool inside, front;
+    cg_ring_image given; /* of the ring at hand, where no id leads to it: of CityJSON; its look 0: none */
     NOC_ARRAY(char) text;
     NOC_ARRAY(uint32_t) lists; /* rings of the list of coordinates at hand */
     size_t named;              /* of them, by elements that follow */
@@ -303,12 +304,13 @@ typedef struct cg_parser {
     const char *polygon_id;
     NOC_ARRAY(char) terrain_id; /* ids of triangles must not pile up in the arena */
     bool in_polygon, in_ring, ring_exterior, has_exterior;
-    bool polygon_counted;     /* a fault of one of its rings has been reported */
-    NOC_ARRAY(char) ring_id;  /* of the ring, "" if none */
-    NOC_ARRAY(float) ring_uv; /* of the polygon's rings, as far as they have any */
-    uint32_t polygon_texture; /* of its rings; 0: none */
-    bool polygon_unplaced;    /* a ring of it is in no image, or in another one */
-    const char *ring_fault;   /* why the ring cannot be used, NULL if it can */
+    bool polygon_counted;      /* a fault of one of its rings has been reported */
+    NOC_ARRAY(char) ring_id;   /* of the ring, "" if none */
+    NOC_ARRAY(float) ring_uv;  /* of the polygon's rings, as far as they have any */
+    uint32_t polygon_texture;  /* of its rings; 0: none */
+    uint32_t polygon_material; /* that is told with it; 0: none, or by its id */
+    bool polygon_unplaced;     /* a ring of it is in no image, or in another one */
+    const char *ring_fault;    /* why the ring cannot be used, NULL if it can */
     bool ring_curved;
     size_t ring_first; /* index into xyz of the ring's first number */
     cg_numbers numbers;
@@ -352,8 +354,11 @@ noc_status cg_parser_end(cg_parser *p);
 /* look.c: gathers what the file's appearances say, where they are asked for, and rewinds it. */
 noc_status cg_read_looks(cg_parser *p);
 void cg_looks_free(cg_looks *looks);
-/* Of a ring of so many points that is good: its place in an image, into p->ring_uv. */
-void cg_ring_look(cg_parser *p, const char *id, size_t points);
+/* Counts what is left out of a material. */
+void cg_material_left_out(cg_parser *p, const cg_look *look);
+noc_wrap cg_wrap_of(const char *mode);
+/* Of a ring of so many points that is good: its place in an image, into p->ring_uv. report_id: for what is wrong. */
+void cg_ring_look(cg_parser *p, const char *id, size_t points, const char *report_id);
 uint32_t cg_material_of(const cg_parser *p, const char *id); /* 0: none */
 /* Gives the object's surfaces the materials of what they are in. */
 void cg_spread_materials(cg_parser *p);

@@ -181,17 +181,21 @@ static void name_target(cg_parser *p, char *reference) {
         cg_no_memory(p);
 }
 
-static noc_wrap wrap_of(const char *text) {
-    return strstr(text, "mirror") ? NOC_WRAP_MIRROR : strstr(text, "wrap") ? NOC_WRAP_REPEAT : NOC_WRAP_CLAMP;
+noc_wrap cg_wrap_of(const char *mode) {
+    return strstr(mode, "mirror") ? NOC_WRAP_MIRROR : strstr(mode, "wrap") ? NOC_WRAP_REPEAT : NOC_WRAP_CLAMP;
+}
+
+void cg_material_left_out(cg_parser *p, const cg_look *look) {
+    if (look->transparency > 0)
+        geo_issue(p->sink->issues, GEO_GUESSED, "transparent material, taken as opaque", "");
+    if (look->emissive[0] > 0 || look->emissive[1] > 0 || look->emissive[2] > 0)
+        geo_issue(p->sink->issues, GEO_GUESSED, "emissive colour, which has no unit and is left out", "");
 }
 
 static void end_material(cg_parser *p, cg_look *look) {
     import_x3d_colour(&look->as, look->diffuse);
     import_x3d_gloss(&look->as, look->specular, look->shininess);
-    if (look->transparency > 0)
-        geo_issue(p->sink->issues, GEO_GUESSED, "transparent material, taken as opaque", "");
-    if (look->emissive[0] > 0 || look->emissive[1] > 0 || look->emissive[2] > 0)
-        geo_issue(p->sink->issues, GEO_GUESSED, "emissive colour, which has no unit and is left out", "");
+    cg_material_left_out(p, look);
 }
 
 static void end_image(cg_parser *p, cg_look *look, char *text) {
@@ -218,7 +222,7 @@ static void on_end(void *user, const XML_Char *name) {
     double number;
     switch (is) {
     case WORD_IMAGE: end_image(p, look, text); break;
-    case WORD_WRAP: look->as.wrap = wrap_of(text); break;
+    case WORD_WRAP: look->as.wrap = cg_wrap_of(text); break;
     case WORD_FRONT: k->front = !strstr(text, "false") && !strchr(text, '0'); break;
     case WORD_DIFFUSE: numbers_of(text, look->diffuse, 3); break;
     case WORD_SPECULAR: numbers_of(text, look->specular, 3); break;
@@ -274,17 +278,19 @@ void cg_looks_free(cg_looks *k) {
     free(k->reference);
 }
 
-void cg_ring_look(cg_parser *p, const char *id, size_t points) {
+void cg_ring_look(cg_parser *p, const char *id, size_t points, const char *report_id) {
     cg_looks *k = &p->looks;
-    uint64_t found;
-    if (p->polygon_unplaced || !k->rings.len)
+    uint64_t found = 0;
+    if (p->polygon_unplaced || (p->xml && !k->rings.len))
         return;
     p->polygon_unplaced = true;
-    if (!*id || !map_get(&k->by_ring, id, &found))
+    if (p->xml && (!*id || !map_get(&k->by_ring, id, &found)))
         return;
-    const cg_ring_image *ring = &k->rings.data[found];
+    const cg_ring_image *ring = p->xml ? &k->rings.data[found] : &k->given;
+    if (!ring->look)
+        return;
     if (ring->count != points && ring->count != points + 1) {
-        cg_issue(p, GEO_GUESSED, "texture coordinates that do not fit their ring", id);
+        cg_issue(p, GEO_GUESSED, "texture coordinates that do not fit their ring", *id ? id : report_id);
         return;
     }
     if (p->polygon_texture && p->polygon_texture != ring->look)

@@ -22,7 +22,7 @@ void cg_polygon_begin(cg_parser *p, const char *id) {
     p->xyz.len = 0;
     p->rings.len = 0;
     p->ring_uv.len = 0;
-    p->polygon_texture = 0;
+    p->polygon_texture = p->polygon_material = 0;
     p->polygon_unplaced = false;
 }
 
@@ -109,7 +109,7 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         p->rings.len = 0;
         p->ring_uv.len = 0;
     }
-    cg_ring_look(p, p->ring_id.data, points);
+    cg_ring_look(p, p->ring_id.data, points, id);
     p->has_exterior |= p->ring_exterior;
     if (!array_push(&p->rings, points))
         cg_no_memory(p);
@@ -134,7 +134,7 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
                            .ring_count = (uint32_t)p->rings.len,
                            .ring_size = p->rings.data,
                            .xyz = p->xyz.data,
-                           .material = cg_material_of(p, p->polygon_id) };
+                           .material = p->polygon_material ? p->polygon_material : cg_material_of(p, p->polygon_id) };
     if (p->polygon_texture && !p->polygon_unplaced) {
         polygon.texture = p->polygon_texture;
         polygon.uv = p->ring_uv.data;

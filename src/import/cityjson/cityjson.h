@@ -3,7 +3,7 @@
  *
  * A file is one JSON value (CityJSON), or many, one after the other (CityJSONSeq: a head, then a value a feature).
  * values.c reads them one by one, document.c what holds for all of a value's objects, object.c the objects, geometry.c
- * their surfaces. Memory is bounded by the largest value. */
+ * their surfaces, look.c what those look like. Memory is bounded by the largest value. */
 #ifndef NOC_CITYJSON_H
 #define NOC_CITYJSON_H
 
@@ -40,6 +40,19 @@ typedef struct cj_points {
     size_t count;
 } cj_points;
 
+enum { CJ_MATERIAL, CJ_TEXTURE, CJ_LOOKS };
+#define CJ_MOST_THEMES 32 /* of a geometry that are looked at */
+
+/* An "appearance". */
+typedef struct cj_looks {
+    bool there;
+    uint32_t *number[CJ_LOOKS]; /* of each material and texture: the parser's look; 0: of no use */
+    size_t count[CJ_LOOKS];
+    char *theme[CJ_LOOKS]; /* the default one; "": none */
+    float *uv;             /* 2 a place */
+    size_t uv_count;
+} cj_looks;
+
 typedef struct cj_reading {
     cg_parser *parser;
     cj_values values;
@@ -48,7 +61,9 @@ typedef struct cj_reading {
     bool transformed; /* the head says how */
     int version;      /* 1: 1.0, whose vertices need no transform; 2: 1.1; 3: 2.0; 0: not known */
     cj_points vertices, template_vertices;
-    json_t *templates; /* a list; NULL: none */
+    json_t *templates;              /* a list; NULL: none */
+    cj_looks head_looks, own_looks; /* of the head, and of a feature that brings its own */
+    noc_map known_looks;            /* what they say -> the parser's look */
     bool seen_head, sequence;
     char place[256];
 } cj_reading;
@@ -65,5 +80,26 @@ void cj_objects(cj_reading *r, json_t *objects);
 
 /* Adds the surfaces of an object's geometries to its feature. */
 void cj_geometries(cj_reading *r, uint32_t feature, const json_t *list);
+
+/* ---- what surfaces look like (look.c) ---- */
+
+/* The "appearance" of a value, which is let go, in place of what was there. */
+void cj_looks_read(cj_reading *r, json_t *root, cj_looks *out);
+void cj_looks_free(cj_looks *looks);
+
+/* What a geometry's themes say of its surfaces. */
+typedef struct cj_themes {
+    const cj_looks *looks;
+    const json_t *theme[CJ_LOOKS][CJ_MOST_THEMES];
+    size_t count[CJ_LOOKS];
+    bool missing; /* one of them names something that is not there */
+} cj_themes;
+cj_themes cj_themes_of(const cj_looks *looks, const json_t *geometry);
+/* Of the surface at that place in lists so deep: the look that is its material, 0: none; its texture, a list for each
+ * of its rings, NULL: none. */
+uint32_t cj_material_at(cj_themes *t, const size_t *path, int depth);
+const json_t *cj_texture_at(const cj_themes *t, const size_t *path, int depth);
+/* Tells the parser where the ring that is read lies in an image. NULL: in none. */
+void cj_ring_texture(cj_reading *r, cj_themes *t, const json_t *list);
 
 #endif

@@ -125,6 +125,8 @@ static void read_head(cj_reading *r, json_t *root) {
         read_templates(r, root);
     if (!r->parser->status)
         read_crs(r, root);
+    if (!r->parser->status)
+        cj_looks_read(r, root, &r->head_looks);
     r->seen_head = true;
 }
 
@@ -164,7 +166,9 @@ static void read_value(cj_reading *r, json_t *root) {
         r->sequence = true;
         tell_format(r);
     }
-    if (!feature)
+    if (feature)
+        cj_looks_read(r, root, &r->own_looks);
+    else
         read_head(r, root);
     if (!r->parser->status)
         read_objects(r, root);
@@ -196,6 +200,9 @@ static noc_status read_cityjson(noc_stream *stream, const noc_import_params *par
     noc_status status = read_all(&r);
     json_decref(r.templates);
     free_points(&r.template_vertices);
+    cj_looks_free(&r.head_looks);
+    cj_looks_free(&r.own_looks);
+    map_free(&r.known_looks);
     cj_values_free(&r.values);
     cg_parser_destroy(r.parser);
     return status;

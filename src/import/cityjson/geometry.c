@@ -23,6 +23,9 @@ typedef struct builder {
     bool open;    /* there is one */
     size_t surfaces;
     bool flawed, semantics_flawed; /* counted once a geometry */
+    cj_themes themes;
+    size_t path[3]; /* of the surface that is read, in the lists; depth of them are in use */
+    int depth;
 } builder;
 
 static void issue(const builder *b, geo_issue_kind kind, const char *reason) {
@@ -48,7 +51,7 @@ static const double *place_of(const builder *b, const json_t *geometry) {
     return xyz && isfinite(xyz[0] + xyz[1] + xyz[2]) ? xyz : NULL;
 }
 
-static void read_ring(builder *b, const json_t *ring, bool exterior) {
+static void read_ring(builder *b, const json_t *ring, const json_t *texture, bool exterior) {
     cg_parser *p = b->r->parser;
     size_t count = json_array_size(ring);
     cg_ring_begin(p, exterior, NULL);
@@ -67,6 +70,8 @@ static void read_ring(builder *b, const json_t *ring, bool exterior) {
     if (!p->ring_fault && count > 2 && !json_equal(json_array_get(ring, 0), json_array_get(ring, count - 1)) &&
         !array_append(&p->xyz, point_of(b, json_array_get(ring, 0)), (size_t)3))
         cg_no_memory(p);
+    if (!p->status)
+        cj_ring_texture(b->r, &b->themes, texture);
     if (!p->status)
         cg_ring_end(p, &b->frame);
 }
@@ -134,9 +139,11 @@ static void read_surface(builder *b, const json_t *rings, const json_t *value) {
     }
     if (!choose_geometry(b, semantics))
         return;
+    const json_t *texture = cj_texture_at(&b->themes, b->path, b->depth);
     cg_polygon_begin(p, NULL);
+    p->polygon_material = cj_material_at(&b->themes, b->path, b->depth);
     for (size_t i = 0; i < json_array_size(rings) && !p->status; i++)
-        read_ring(b, json_array_get(rings, i), i == 0);
+        read_ring(b, json_array_get(rings, i), json_array_get(texture, i), i == 0);
     if (!p->status)
         cg_polygon_end(p, &b->frame);
     if (!p->status && ++b->surfaces % ASK == 0 && !p->sink->progress(p->sink->ctx, noc_stream_progress(p->stream)))
@@ -155,6 +162,7 @@ static void walk(builder *b, const json_t *boundaries, const json_t *values, int
             issue(b, GEO_SPARED, "shell of a hollow in a solid, left out, it is inside");
             break;
         }
+        b->path[b->depth - depth] = i;
         if (depth == 1)
             read_surface(b, part, value);
         else
@@ -270,7 +278,11 @@ static void read_geometry(cj_reading *r, uint32_t feature, const char *id, const
         return;
     }
     memset(b.features, 0xff, b.type_count * sizeof(*b.features));
+    b.themes = cj_themes_of(content == geometry && r->own_looks.there ? &r->own_looks : &r->head_looks, content);
+    b.depth = depth;
     walk(&b, json_object_get(content, "boundaries"), json_object_get(semantics, "values"), depth);
+    if (b.themes.missing)
+        issue(&b, GEO_GUESSED, "material, texture or place in one that is not there");
     free(b.features);
 }
 

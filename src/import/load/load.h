@@ -437,8 +437,8 @@ noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *n
 geo_triangles *look_triangles(reading *r, uint32_t look, noc_class cls);
 void look_end_object(reading *r);
 void look_free(reading *r);
-/* The material of such surfaces of the scene; < 0: refused, and said. */
-int look_material(importer *im, const input *in, noc_class cls, const surface_look *look);
+/* The material of such surfaces of the scene. */
+noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material);
 /* Reads the images, when all surfaces are there, and gives them to their materials. */
 noc_status look_read_images(importer *im);
 

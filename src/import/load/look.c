@@ -116,32 +116,29 @@ static noc_material material_of(noc_class cls, const geo_appearance *as) {
     return m;
 }
 
-int look_material(importer *im, const input *in, noc_class cls, const surface_look *look) {
+noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material) {
     const geo_appearance *as = &look->as;
     uint64_t image = 0, found;
-    int material = -1;
-    if (look->image && !number_image(im, in, look->image, as->wrap, &image)) {
-        noc_no_memory(im->log, in->path);
-        return -1;
-    }
+    if (look->image && !number_image(im, in, look->image, as->wrap, &image))
+        return noc_no_memory(im->log, in->path);
     char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g", (int)cls, look->image ? (long long)image : -1,
                            as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness);
-    if (key && map_get(&im->looks, key, &found)) {
-        material = (int)found;
-    } else if (key) {
-        noc_material m = material_of(cls, as);
-        material = noc_scene_add_material(im->scene, &m);
-        bool kept = material >= 0 && map_put(&im->looks, key, (uint64_t)material, NULL) &&
-                    (!look->image || array_push(&im->image_uses, (image_use){ material, (uint32_t)image }));
-        if (material >= 0 && !kept) {
-            noc_no_memory(im->log, in->path);
-            material = -1;
-        }
+    if (!key)
+        return noc_no_memory(im->log, in->path);
+    noc_status status = NOC_OK;
+    if (map_get(&im->looks, key, &found)) {
+        *material = (int)found;
     } else {
-        noc_no_memory(im->log, in->path);
+        noc_material m = material_of(cls, as);
+        *material = noc_scene_add_material(im->scene, &m);
+        if (*material < 0)
+            status = NOC_ERR_UNSUPPORTED; /* said by the scene */
+        else if (!map_put(&im->looks, key, (uint64_t)*material, NULL) ||
+                 (look->image && !array_push(&im->image_uses, (image_use){ *material, (uint32_t)image })))
+            status = noc_no_memory(im->log, in->path);
     }
     free(key);
-    return material;
+    return status;
 }
 
 /* ---- images ---- */

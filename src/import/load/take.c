@@ -91,13 +91,17 @@ static noc_status take_surface(importer *im, input *in, const char *id, const pa
                       .positions = s->xyz,
                       .triangle_count = s->triangle_count,
                       .indices = s->indices,
-                      .material = s->look ? look_material(im, in, s->cls, s->look) : take_material(im, s->cls, id),
                       .uv = s->uv,
                       .name = *id ? id : NULL };
+    noc_status status = s->look ? look_material(im, in, s->cls, s->look, &mesh.material) : NOC_OK;
+    if (status)
+        return status;
+    if (!s->look)
+        mesh.material = take_material(im, s->cls, id);
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     in->file.triangles += mesh.triangle_count;
-    noc_status status = take_affords(im, in, 0);
+    status = take_affords(im, in, 0);
     if (!status && is_open_ground(s->cls))
         im->open_area += area_from_above(s);
     im->has_roads = im->has_roads || s->cls == NOC_CLASS_ROAD || s->cls == NOC_CLASS_SIDEWALK;
