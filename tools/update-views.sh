@@ -26,3 +26,4 @@ figure confidence --method restir --frames 8 --show-range 0,4032
 figure rays --method restir --frames 8 --show-range 0,24
 figure variance --frames 32 --show-range 0.0001,1000
 figure error --frames 32 --show-range 0.01,1
+figure group --frames 32

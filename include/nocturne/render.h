@@ -36,6 +36,13 @@ NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 
 /* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the
  * frame shaded. */
+typedef enum noc_placed {
+    NOC_PLACED_OTHER,    /* no lamp: windows, what shines by its material, what moves */
+    NOC_PLACED_MAPPED,   /* a lamp of the data */
+    NOC_PLACED_INFERRED, /* a lamp that a rule has placed */
+    NOC_PLACED_COUNT
+} noc_placed;
+
 typedef enum noc_aov {
     /* lights that the query found: influence: volumes that hold the point; lists: entries of the tile's list */
     NOC_AOV_LIGHTS,
@@ -53,6 +60,11 @@ typedef enum noc_aov {
     NOC_AOV_NORMAL, /* its unit normal on the viewer's side, in the scene's local frame: three components */
     NOC_AOV_CLASS,  /* its noc_class */
     NOC_AOV_OBJECT, /* its object, for noc_scene_object_name; exact below 2^24 */
+    /* what brings the most luminance, of the frames accumulated since it was asked for; of an emitter that is seen it
+     * is its own. Where a pixel has light of more than eight groups, it is sure of a share that is an eighth above the
+     * next */
+    NOC_AOV_GROUP,  /* the group of lights: its index, as noc_scene_groups has them; 0: lights of no group */
+    NOC_AOV_PLACED, /* how the light got its place: a noc_placed */
     NOC_AOV_COUNT
 } noc_aov;
 

@@ -323,6 +323,7 @@ typedef struct noc_light_info {
     double lumens;    /* luminous flux that leaves it, from both sides where it is two-sided */
     double area;      /* m2; of a disc, triangle or parallelogram one side, 0 for points and spots */
     bool two_sided;
+    bool lamp;    /* neither flat nor moving: a lamp, where the scene is a city */
     bool removed; /* there is no light of this index (now); all else is 0 */
 } noc_light_info;
 

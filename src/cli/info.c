@@ -11,8 +11,8 @@ static const noc_option own_options[] = {
       "tell of all inputs as one scene, too, as render loads them: buildings, triangles, windows, lamps, what was "
       "skipped; where neither is said, of recipes" },
     { "each-lamp", "Output", NOC_OPTION_BOOL, offsetof(A, each_lamp), 0, 1, NULL, "",
-      "a line of CSV for each lamp of the scene, instead of all else: its place, flux, and whether it is mapped or "
-      "inferred; with --json beside the rest" },
+      "a line of CSV for each lamp of the scene, instead of all else: its place, flux, group, and whether it is mapped "
+      "or inferred; with --json beside the rest" },
     { "timing", "Output", NOC_OPTION_BOOL, offsetof(A, timing), 0, 1, NULL, "",
       "tell how long reading took, and with a scene the peak memory" },
     { NULL },

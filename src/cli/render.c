@@ -10,7 +10,7 @@
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
-      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object", "",
+      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed", "",
       "what is written: the picture, how lights were sampled, or what is seen" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
     TEXT("influence-obj", "Output", influence_obj, "FILE",
@@ -349,7 +349,7 @@ static int run(void *arguments) {
     free(job.room);
     free(job.animation);
     noc_image_destroy(job.image);
-    noc_channel_destroy(job.shown);
+    cli_drop_view(&job);
     noc_view_destroy(job.view);
     noc_device_destroy(job.device);
     noc_report_destroy(job.report);

@@ -43,10 +43,12 @@ typedef struct render_job {
     noc_view *view;
     noc_image *image;
     noc_channel *shown; /* --show */
-    const char *file;   /* that the picture goes to */
-    int averaged;       /* frames in it */
-    char *animation;    /* of an animation's picture, for its metadata; NULL: it is none */
-    void *room;         /* memory that the picture and its file will take, held while frames are rendered */
+    char **labels;      /* that stand for its numbers where they are the scene's; label_count of them */
+    size_t label_count;
+    const char *file; /* that the picture goes to */
+    int averaged;     /* frames in it */
+    char *animation;  /* of an animation's picture, for its metadata; NULL: it is none */
+    void *room;       /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
     bool far_away; /* the camera is, and it was said */
     noc_scene_info scene_info;
@@ -95,6 +97,7 @@ int cli_check_camera(const render_args *args);
 
 /* show.c */
 int cli_parse_show(render_args *args);
+void cli_drop_view(render_job *job); /* the one that was written last */
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta);
 void cli_print_view_kind(const render_job *job, bool numbers); /* what the file holds; ends the line */
 void cli_print_view(const render_job *job);

@@ -26,9 +26,38 @@ int cli_parse_show(render_args *args) {
     return status ? CLI_USAGE : CLI_OK;
 }
 
+/* Names of the scene's groups, for the legend. */
+static void name_groups(render_job *job) {
+    size_t count = noc_scene_groups(job->scene, NULL, 0);
+    noc_group_info *groups = cli_alloc(count * sizeof(*groups));
+    noc_scene_groups(job->scene, groups, count);
+    job->labels = cli_alloc(count * sizeof(*job->labels));
+    for (size_t i = 0; i < count; i++) {
+        char text[48];
+        job->labels[i] = cli_format("%s", i ? noc_text_clean(text, sizeof(text), groups[i].name) : "others");
+    }
+    job->label_count = count;
+    free(groups);
+}
+
+void cli_drop_view(render_job *job) {
+    noc_channel_destroy(job->shown);
+    job->shown = NULL;
+    for (size_t i = 0; i < job->label_count; i++)
+        free(job->labels[i]);
+    free(job->labels);
+    job->labels = NULL;
+    job->label_count = 0;
+}
+
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta) {
-    noc_channel_destroy(job->shown); /* of an animation's picture before */
+    cli_drop_view(job); /* of an animation's picture before */
     job->shown = noc_view_aov(job->view, shown(job->args));
+    if (job->shown && shown(job->args) == NOC_AOV_GROUP) {
+        name_groups(job);
+        job->shown->labels = (const char *const *)job->labels;
+        job->shown->label_count = job->label_count;
+    }
     return job->shown ? noc_channel_write(job->shown, job->file, &job->args->range, meta, job->log) : NOC_ERR_MEMORY;
 }
 

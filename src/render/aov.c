@@ -8,6 +8,7 @@ static const char *const names[NOC_AOV_COUNT] = {
     [NOC_AOV_WEIGHT] = "weight",     [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
     [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",           [NOC_AOV_DEPTH] = "depth",
     [NOC_AOV_NORMAL] = "normal",     [NOC_AOV_CLASS] = "class",           [NOC_AOV_OBJECT] = "object",
+    [NOC_AOV_GROUP] = "group",       [NOC_AOV_PLACED] = "placed",
 };
 
 const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
@@ -55,6 +56,9 @@ static const uint8_t class_colours[NOC_LABEL_COUNT][3] = {
 #undef WALL
 };
 
+static const char *const placed_names[NOC_PLACED_COUNT] = { "other lights", "mapped lamps", "inferred lamps" };
+static const uint8_t placed_colours[NOC_PLACED_COUNT][3] = { { 120, 120, 140 }, { 127, 227, 245 }, { 230, 110, 0 } };
+
 void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
     static const struct {
         const char *title, *unit;
@@ -72,14 +76,24 @@ void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *chan
         [NOC_AOV_NORMAL] = { "normal: red east, green north, blue up", "", NOC_CHANNEL_LINEAR },
         [NOC_AOV_CLASS] = { "semantic class", "", NOC_CHANNEL_LABELS },
         [NOC_AOV_OBJECT] = { "object: each its own colour", "", NOC_CHANNEL_LABELS },
+        [NOC_AOV_GROUP] = { "group of lights that brings the most light", "", NOC_CHANNEL_LABELS },
+        [NOC_AOV_PLACED] = { "what brings the most light", "", NOC_CHANNEL_LABELS },
+    };
+    static const struct {
+        const char *const *names;
+        size_t count;
+        const uint8_t (*colours)[3];
+    } labels[NOC_AOV_COUNT] = {
+        [NOC_AOV_CLASS] = { noc_label_names, NOC_LABEL_COUNT, class_colours },
+        [NOC_AOV_PLACED] = { placed_names, NOC_PLACED_COUNT, placed_colours },
     };
     channel->name = names[aov];
     channel->unit = kinds[aov].unit;
     channel->scale = kinds[aov].scale;
     channel->title = kinds[aov].title;
-    channel->labels = aov == NOC_AOV_CLASS ? noc_label_names : NULL;
-    channel->label_count = channel->labels ? NOC_LABEL_COUNT : 0;
-    channel->label_colours = channel->labels ? class_colours : NULL;
+    channel->labels = labels[aov].names;
+    channel->label_count = labels[aov].count;
+    channel->label_colours = labels[aov].colours;
     if (aov == NOC_AOV_LIGHTS && p->candidates == NOC_CANDIDATES_LISTS)
         channel->title = "entries of the tile list";
 }

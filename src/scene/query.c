@@ -114,6 +114,7 @@ static void describe_light(const noc_scene *scene, size_t index, noc_light_info 
     *info = (noc_light_info){ .lumens = noc_light_flux(r),
                               .area = noc_light_has_profile(r) ? area_of_round(r) : r->area,
                               .two_sided = r->flags & NOC_LIGHT_TWO_SIDED && !noc_light_has_profile(r),
+                              .lamp = noc_light_is_lamp(r),
                               .light = { .kind = (noc_light_kind)r->kind,
                                          .name = scene->light_names.data[index],
                                          .inferred = (r->flags & NOC_LIGHT_INFERRED) != 0,

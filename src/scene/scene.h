@@ -32,6 +32,10 @@ _Static_assert((int)WRAP_REPEAT == NOC_WRAP_REPEAT && (int)WRAP_MIRROR == NOC_WR
 #define NOC_LIGHT_GROUP 16  /* before it the profile's number: LIGHT_PROFILE */
 static inline bool noc_light_has_profile(const noc_light_record *r) { return r->flags & LIGHT_PROFILE_BITS; }
 static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
+/* What is taken for a lamp: windows and emissive surfaces are flat, headlamps move. */
+static inline bool noc_light_is_lamp(const noc_light_record *r) {
+    return r->kind != LIGHT_TRIANGLE && r->kind != LIGHT_PARALLELOGRAM && !(r->flags & NOC_LIGHT_MOVES);
+}
 /* Is a light of these flags in the half that stands? */
 static inline bool noc_light_stands(uint32_t flags) { return !(flags & (NOC_LIGHT_MOVES | NOC_LIGHT_LATER)); }
 

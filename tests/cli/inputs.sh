@@ -163,11 +163,16 @@ cat >lit.osm <<'END'
 END
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     run info --each-lamp --infer-lamps lit.osm
-    test $status = 0 && test "$(head -n 1 out)" = name,placed,x,y,z,lumens,shape && test "$(wc -l <out)" = 8 &&
-        grep -q '^"node/3",mapped,.*,5000,disc$' out && test "$(grep -c '^"inferred/way/4/[1-6]",inferred,' out)" = 6
+    test $status = 0 && test "$(head -n 1 out)" = name,placed,x,y,z,lumens,shape,group && test "$(wc -l <out)" = 8 &&
+        grep -q '^"node/3",mapped,.*,5000,disc,"lamps"$' out &&
+        test "$(grep -c '^"inferred/way/4/[1-6]",inferred,' out)" = 6
     result $? "info of each lamp"
     run info --each-lamp --infer-lamps --json lit.osm
-    test $status = 0 && test "$(grep -c '"placed": "inferred"' out)" = 6; result $? "info of each lamp as JSON"
+    test $status = 0 && test "$(grep -c '"placed": "inferred".*"group": "lamps"' out)" = 6
+    result $? "info of each lamp as JSON"
+    run render --infer-lamps --map-surfaces lit.osm --size 64x36 --frames 2 --show placed -o placed.png
+    test $status = 0 && grep -q '2 inferred lamps [0-9.]*%' out && ! grep -q other out
+    result $? "a view of where inferred lamps lead"
 else
     skip "info of each lamp" "no GDAL"
 fi

@@ -184,6 +184,13 @@ result $? "a view of classes tells their names: in the picture, its metadata, an
     "$(meta class.png labels)"
 run render "$source_dir/tests/cli/city.gml" --size 64x36 --frames 1 --show object -o object.png
 test $status = 0 && grep -Eq '^            .*[0-9]+ house [0-9.]+%' out; result $? "one of objects those that have some"
+run render $small --show group -o group.png
+cp out told
+run render $small --group windows=off --show group -o group.exr
+test $status = 0 && meta group.png labels | grep -Eq '^0 others #[0-9a-f]{6}, 1 lamps #[0-9a-f]{6}, 2 windows #' &&
+    grep -q '2 windows [0-9.]*%' told && grep -q '1 lamps [0-9.]*%' out && ! grep -q '2 windows' out &&
+    grep -aq '0 others, 1 lamps, 2 windows' group.exr
+result $? "one of groups of lights their names, and none that is off"
 
 # Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I)
 # around their shape.

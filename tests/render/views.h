@@ -40,4 +40,38 @@ static inline noc_channel *view(noc_view *r, noc_aov aov) {
     return v;
 }
 
+/* Walls, gloss, all kinds of light, emitters. */
+static inline noc_scene *street(int lights) {
+    noc_scene *s = noc_scene_create(NULL);
+    int wall = matte(s, 0.5f);
+    int wet =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
+    int lamp =
+        noc_scene_add_material(s, &(noc_material){
+                                      .albedo = { 0.5f, 0.5f, 0.5f }, .roughness = 1, .emission = { 30, 20, 10 } });
+    int group = noc_scene_add_group(s, "some");
+    add_floor(s, wet, 0, 0, 0, 20);
+    QUAD(s, wall, -8, 6, 0, 16, 0, 0, 0, 0, 5);
+    QUAD(s, wall, -3, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
+    QUAD(s, lamp, 0, 5.9, 1, 2, 0, 0, 0, 0, 1);
+    for (int i = 0; i < lights; i++) {
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .group = i % 3 ? group : 0,
+                        .inferred = i & 1,
+                        .inner_deg = 30,
+                        .outer_deg = 60,
+                        .position = { -7 + 0.31 * i, 5.7 - 0.2 * (i % 5), 1 + i % 7 },
+                        .edge_u = { 0.4, 0, 0 },
+                        .edge_v = { 0, 0, 0.7 },
+                        .direction = { 0, -1, -0.5 },
+                        .radius = 0.1,
+                        .emission = { 20.f + (float)i, 25, 10 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static inline noc_camera along(void) { return look(1, -10, 4, 0, 0, 2.5, 60); }
+
 #endif

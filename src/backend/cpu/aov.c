@@ -8,19 +8,25 @@
 #define BIT(aov) (1u << NOC_AOV_##aov)
 enum {
     /* by the passes, so a dropped frame must not touch what is kept */
-    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS),
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS) | BIT(GROUP) | BIT(PLACED),
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
     SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT), /* what is seen: emitters too */
+    SOURCES = BIT(GROUP) | BIT(PLACED),                             /* sums over frames: sources.c */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
 };
 
 /* Buffers that these views take. */
 static uint32_t buffers_of(uint32_t aovs) { return aovs & MOMENTS ? aovs | MOMENTS : aovs; }
 
+/* Entries of a block: a vector's components one after the other. */
+static size_t components(int aov) { return aov == NOC_AOV_NORMAL ? 3 : SOURCES >> aov & 1 ? 2 * SOURCE_PLACES : 1; }
+
 size_t noc_cpu_aov_bytes(uint32_t aovs) {
-    uint32_t kept = buffers_of(aovs);
-    int normal = kept & BIT(NORMAL) ? 2 : 0; /* two more than the one that is counted */
-    return sizeof(float) * (size_t)(__builtin_popcount(kept) + __builtin_popcount(kept & GATHERED) + normal);
+    size_t floats = 0;
+    for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
+        if (buffers_of(aovs) >> aov & 1)
+            floats += components(aov) * (GATHERED >> aov & 1 ? 2 : 1);
+    return sizeof(float) * floats;
 }
 
 static void drop(aov_buffers *v, int aov) {
@@ -42,9 +48,6 @@ void noc_cpu_free_aovs(aov_buffers *v) {
     *v = (aov_buffers){ 0 };
 }
 
-/* Entries of a block: a vector's components one after the other. */
-static size_t components(int aov) { return aov == NOC_AOV_NORMAL ? 3 : 1; }
-
 static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
     return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
 }
@@ -59,12 +62,12 @@ noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs) {
             free(v->made[aov]);
             v->made[aov] = NULL;
         } else if (!allocate(&v->kept[aov], components(aov) * blocks) ||
-                   (gathered && !allocate(&v->made[aov], blocks))) {
+                   (gathered && !allocate(&v->made[aov], components(aov) * blocks))) {
             v->asked = v->held;
             drop_but(v, v->held);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
         } else if (gathered) {
-            for (size_t i = 0; i < blocks; i++)
+            for (size_t i = 0; i < components(aov) * blocks; i++)
                 for (int l = 0; l < BLOCK; l++)
                     v->made[aov][i][l] = aov == NOC_AOV_RAYS ? 0 : -1;
         }
@@ -144,6 +147,7 @@ static void add_moments(aov_buffers *v, size_t block, const cblock *c) {
 struct keep_run {
     cpu_view *s;
     const noc_frame *frame;
+    uint32_t fresh; /* views whose sums begin with this frame */
 };
 
 static void keep_row(void *arg, size_t row, int index) {
@@ -160,8 +164,10 @@ static void keep_row(void *arg, size_t row, int index) {
             keep_surfaces(run->s->scene, v, i, g);
         if (v->asked & MOMENTS)
             add_moments(v, i, &b->colour[i]);
+        if (v->asked & SOURCES)
+            noc_cpu_keep_sources(v, i, run->fresh);
         for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
-            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS | SURFACES) >> aov)))
+            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS | SURFACES | SOURCES) >> aov)))
                 continue;
             for (int l = 0; l < BLOCK; l++)
                 if (g->material[l] == NO_SURFACE || g->light[l] != NOC_NO_LIGHT)
@@ -176,14 +182,15 @@ void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame) {
     if (!v->asked)
         return;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
-        if (v->asked & GATHERED & 1u << aov) {
+        if (v->asked & GATHERED & ~SOURCES & 1u << aov) {
             float(*kept)[BLOCK] = v->kept[aov];
             v->kept[aov] = v->made[aov];
             v->made[aov] = kept;
         }
     if (!frame->accumulated || !(v->held & MOMENTS))
         v->frames = 0;
-    noc_pool_run(s->pool, (size_t)s->b.blocks_y, keep_row, &(struct keep_run){ s, frame });
+    noc_pool_run(s->pool, (size_t)s->b.blocks_y, keep_row,
+                 &(struct keep_run){ s, frame, frame->accumulated ? ~v->held : ~0u });
     v->held = v->asked;
     v->gbuffer = frame->gbuffer;
     v->frames += (v->asked & MOMENTS) != 0;
@@ -205,7 +212,8 @@ bool noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
                     value[3 * to + k] = v->kept[aov][3 * at + k][l];
                 continue;
             }
-            double out = v->kept[aov][at][l];
+            double out = SOURCES >> aov & 1 ? noc_cpu_main_source(&v->kept[aov][2 * SOURCE_PLACES * at], l)
+                                            : v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
                 bool none = n < 2 || noc_cpu_saw_emitter(b, at, l) || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||

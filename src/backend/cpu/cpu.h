@@ -309,6 +309,19 @@ void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t
                             const rblock *r);
 void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame); /* the frame is complete */
 
+/* sources.c */
+enum {
+    SOURCE_PLACES = 8
+}; /* labels of lights that a pixel has room for; with their sums they are twice as many arrays */
+/* The samples' light goes into a block's colour, and into the views of where light comes from. Returns the lanes that
+ * were dropped. */
+uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, uint32_t lanes, size_t block);
+/* Emitters that are seen: c is their luminance. */
+void noc_cpu_note_emitters(const stage_run *run, const gblock *g, const cblock *c, size_t block);
+/* The frame is complete; fresh: bits of views whose sums begin with it. */
+void noc_cpu_keep_sources(aov_buffers *v, size_t block, uint32_t fresh);
+float noc_cpu_main_source(float (*place)[BLOCK], int lane); /* label of the most light; -1: there is none */
+
 /* coverage.c: what emitters that are seen directly add to the mean */
 /* room for the frame, when its shading is done */
 noc_status noc_cpu_make_coverage(cpu_view *s, const noc_frame *frame);

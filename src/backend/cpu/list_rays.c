@@ -218,9 +218,8 @@ void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];
         if (t->segments[i].unoccluded)
-            w->dropped +=
-                (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[block], &t->draws[i].r,
-                                                           t->segments[i].unoccluded, &run->s->b.colour[block]));
+            w->dropped += (uint64_t)__builtin_popcount(
+                noc_cpu_shade_samples(run, &g[block], &t->draws[i].r, t->segments[i].unoccluded, block));
     }
 }
 

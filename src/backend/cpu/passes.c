@@ -246,7 +246,7 @@ static uint32_t reference_entry(const reference_scratch *e, uint32_t i, rblock *
     return lanes;
 }
 
-static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, const tile_block *block, cblock *c) {
+static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, const tile_block *block) {
     uint32_t surfaces = lanes_with_surface(g), dropped = 0, most = 0;
     bool rays = run->ctx.frame->flags & FRAME_FINAL_RAY;
     if (!surfaces)
@@ -267,7 +267,7 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (uint32_t i = 0; i < n; i++)
-            dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].unoccluded : lanes[i], c);
+            dropped |= noc_cpu_shade_samples(run, g, &r[i], rays ? w->batch.blocks[i].unoccluded : lanes[i], block->at);
     }
     return dropped;
 }
@@ -302,8 +302,8 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
             for (int l = 0; l < BLOCK; l++)
                 part.w[l] *= share[i][l];
         }
-        w->dropped += (uint64_t)__builtin_popcount(
-            run->k->shade(&run->ctx, &g[at], share ? &part : &r[at], lanes[i], &b->colour[at]));
+        w->dropped +=
+            (uint64_t)__builtin_popcount(noc_cpu_shade_samples(run, &g[at], share ? &part : &r[at], lanes[i], at));
     }
 }
 
@@ -312,8 +312,11 @@ static void emitters(stage_run *run, worker *w, tile t) {
     const gblock *g = b->g[run->frame->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks);
-    for (int i = 0; i < n; i++)
-        show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        show_emitters(run, &g[at], &b->emitter[at], &b->colour[at]);
+        noc_cpu_note_emitters(run, &g[at], &b->colour[at], at);
+    }
 }
 
 static void shade(stage_run *run, worker *w, tile t) {
@@ -329,7 +332,7 @@ static void shade_all(stage_run *run, worker *w, tile t) {
     int n = noc_cpu_tile_blocks(run, t, blocks);
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
-        w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, &g[at], &blocks[i], &b->colour[at]));
+        w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, &g[at], &blocks[i]));
     }
 }
 
