@@ -422,6 +422,15 @@ put("tracks", "lines.json", json.dumps({"type": "FeatureCollection", "features":
     {"type": "Feature", "properties": {"@id": "way/7"}, "geometry":
      {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.5, 48.2]], [[11, 48], [11, 48.1]]]}}]}))
 
+put("tracks", "times.json", json.dumps({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"coordTimes": [["2026-11-22T22:00:00Z", "2026-11-22T22:00:09Z"], [10, 20]]},
+     "geometry": {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.5, 48.2]], [[11, 48], [11, 48.1]]]}},
+    {"type": "Feature", "properties": {"times": [1, 2]}, "geometry":
+     {"type": "LineString", "coordinates": [[11.5, 48.1], [11.5, 48.2]]}}]}))
+put("tracks", "points.json", json.dumps({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"track": "ab"[i % 2], "time": "2026-11-22T22:00:%02dZ" % i}, "geometry":
+     {"type": "Point", "coordinates": [11.5, 48.1 + i / 1000]}} for i in range(4)]}))
+
 # ---- recipes ----
 
 put("recipe", "small", "nocturne: 1\ninputs: builtin:city\n")

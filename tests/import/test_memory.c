@@ -38,7 +38,7 @@ static const char *write_text(const char *name, const char *text) {
 
 typedef struct import {
     const char *inputs[3]; /* files; NULL behind the last */
-    const char *crs, *scene_crs, *lamps, *columns, *body, *car;
+    const char *crs, *scene_crs, *lamps, *columns, *body, *car, *tracks;
     bool isolate, inspect, footprints, traffic;
     bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
 } import;
@@ -58,6 +58,7 @@ static noc_status run(const import *in, uint64_t number, bool and_later, bool *r
     params.lamp_body = in->body ? path_of(in->body) : NULL;
     params.cars.bodies = (noc_texts){ { in->car ? path_of(in->car) : NULL }, in->car != NULL };
     params.cars.body_length = 4;
+    params.tracks = (noc_texts){ { in->tracks ? path_of(in->tracks) : NULL }, in->tracks != NULL };
     params.traffic = in->traffic ? NOC_SWITCH_ON : NOC_SWITCH_AUTO;
     if (in->lamps)
         params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
@@ -212,6 +213,15 @@ static const char car[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty flo
                           "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
                           "0 0 0\n2 0 0\n2 4 1\n0 4 1\n3 0 1 2\n3 0 2 3\n";
 
+/* Beside the city, which is no matter here. */
+static const char timed[] =
+    "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"track\":\"a\","
+    "\"time\":\"1\",\"coordTimes\":[[1,2],[3,\"4\"]]},\"geometry\":{\"type\":\"MultiLineString\","
+    "\"coordinates\":[[[11.5,48.1],[11.5,48.2]],[[11,48],[11,48.1]]]}},{\"type\":\"Feature\","
+    "\"properties\":{\"track\":\"b\",\"time\":\"1\"},\"geometry\":{\"type\":\"Point\",\"coordinates\":"
+    "[11.5,48.1]}},{\"type\":\"Feature\",\"properties\":{\"track\":\"b\",\"time\":\"2\"},\"geometry\":"
+    "{\"type\":\"Point\",\"coordinates\":[11.5,48.2]}}]}";
+
 static void maps(void **state) {
     if (!strstr(noc_features(), "gdal"))
         skip();
@@ -230,6 +240,9 @@ static void maps(void **state) {
                            .traffic = true });
     refuse_each("A body for cars",
                 &(import){ { "citygml/whole.gml", write_text("trip.gpx", trip) }, .car = write_text("car.ply", car) });
+    refuse_each("Tracks of a map", &(import){ { "citygml/whole.gml" }, .tracks = write_text("timed.json", timed) });
+    refuse_each("Tracks of a map by the helper",
+                &(import){ { "citygml/whole.gml" }, .tracks = write_text("timed.json", timed), .isolate = true });
     refuse_each("GeoTIFF", &(import){ { "terrain/floats.tif" } });
     refuse_each("GeoTIFF by the helper", &(import){ { "terrain/floats.tif" }, .isolate = true });
     refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });

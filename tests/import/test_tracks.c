@@ -193,6 +193,88 @@ static void test_maps(void **state) {
 }
 #endif
 
+#if NOC_HAVE_GDAL
+#define FEATURE(type, properties, coordinates)                                                                         \
+    "{\"type\":\"Feature\",\"properties\":{" properties "},\"geometry\":{\"type\":\"" type                             \
+    "\",\"coordinates\":" coordinates "}}"
+#define COLLECTION(features) "{\"type\":\"FeatureCollection\",\"features\":[" features "]}"
+#define LINE "[[15,45],[15,45.001],[15,45.002]]"
+
+/* 0.001 degrees in 10 s, and as much in 20 s, however times are written. */
+static void test_timed_lines(void **state) {
+    static const char *const ways[] = {
+        "\"coordTimes\":[\"2026-11-22T22:00:00Z\",\"2026-11-22T22:00:10Z\",\"2026-11-22T23:00:30+01:00\"]",
+        "\"times\":[100,110,130]",
+        "\"times\":[100.5,110.5,130.5]",
+        "\"times\":[1795392000000,1795392000010,1795392000030]",
+        "\"coordinateProperties\":{\"times\":[\"2026-11-22T22:00:00Z\",\"2026-11-22T22:00:10Z\","
+        "\"2026-11-22T22:00:30Z\"]}",
+    };
+    noc_import_params params;
+    name_it(&params);
+    for (size_t i = 0; i < NOC_COUNT(ways); i++) {
+        char text[1000];
+        params.isolate = i % 2;
+        snprintf(text, sizeof(text), COLLECTION(FEATURE("LineString", "%s", LINE)), ways[i]);
+        assert_int_equal(load(&params, text), NOC_OK);
+        assert_int_equal(scene->cars.len, 1);
+        assert_place(at(0, 5), 0, .0005 * DEGREE_N);
+        assert_place(at(0, 20), 0, .0015 * DEGREE_N);
+    }
+}
+
+/* Segments are parts of one track, and a car jumps from one to the next. */
+static void test_timed_parts(void **state) {
+    noc_import_params params;
+    name_it(&params);
+    for (int isolate = 0; isolate < 2; isolate++) {
+        params.isolate = isolate;
+        assert_int_equal(load(&params, COLLECTION(FEATURE("MultiLineString",
+                                                          "\"@id\":\"trip\",\"coordTimes\":[[\"2026-11-22T22:00:00Z\","
+                                                          "\"2026-11-22T22:00:10Z\"],[\"2026-11-22T23:00:00Z\","
+                                                          "\"2026-11-22T23:00:20Z\"]]",
+                                                          "[[[15,45],[15,45.001]],[[15.005,45],[15.005,45.001]]]"))),
+                         NOC_OK);
+        assert_int_equal(scene->cars.len, 1);
+        assert_place(at(0, 5), 0, .0005 * DEGREE_N);
+        assert_place(at(0, 20), .005 * DEGREE_E, .0005 * DEGREE_N);
+    }
+    assert_int_equal(load(&params, COLLECTION(FEATURE("LineString", "\"times\":[1,2]", LINE))), NOC_OK);
+    assert_int_equal(line("track with more or fewer times than points, driven at one speed"), 1);
+    assert_place(at(0, 3.6), 0, 40);
+    assert_int_equal(load(&params, COLLECTION(FEATURE("LineString", "\"times\":\"[[1,2\"", LINE))), NOC_OK);
+    assert_place(at(0, 3.6), 0, 40);
+    assert_int_equal(load(&params, COLLECTION(FEATURE("LineString", "\"times\":[\"1\",\"late\",\"3\"]", LINE))),
+                     NOC_OK);
+    assert_int_equal(line("track with times at some of its points alone"), 1);
+}
+
+/* Points of two tracks by turns; a waypoint without a time among them. */
+static void test_timed_points(void **state) {
+    static const char *const times[][2] = { { "\"2026-11-22T22:00:00Z\"", "\"2026-11-22T23:00:10+01:00\"" },
+                                            { "1000", "1010" },
+                                            { "\"2026/11/22 22:00:00\"", "\"2026/11/22 22:00:10\"" } };
+    static const char *const names[] = { "time", "timestamp", "time" };
+    noc_import_params params;
+    name_it(&params);
+    for (size_t i = 0; i < NOC_COUNT(times); i++) {
+        char text[2000];
+        params.isolate = i % 2;
+        snprintf(text, sizeof(text),
+                 COLLECTION(FEATURE("Point", "\"track\":\"a\",\"%s\":%s", "[15,45]") "," FEATURE(
+                     "Point", "\"track\":\"b\",\"%s\":%s",
+                     "[15.005,45]") "," FEATURE("Point", "\"track\":\"a\",\"%s\":%s",
+                                                "[15,45.001]") "," FEATURE("Point", "\"track\":\"b\",\"%s\":%s",
+                                                                           "[15.005,45.002]")),
+                 names[i], times[i][0], names[i], times[i][0], names[i], times[i][1], names[i], times[i][1]);
+        assert_int_equal(load(&params, text), NOC_OK);
+        assert_int_equal(scene->cars.len, 2);
+        assert_place(at(0, 5), 0, .0005 * DEGREE_N);
+        assert_place(at(1, 5), .005 * DEGREE_E, .001 * DEGREE_N);
+    }
+}
+#endif
+
 static void test_skipped(void **state) {
     load_well("<gpx><trk><trkseg><trkpt lat='45' lon='15'/></trkseg></trk><rte><rtept lat='45' lon='15'/><rtept "
               "lat='91' lon='15'/><rtept lat='45.00001' lon='15'/></rte><trk><trkseg><trkpt lat='47' lon='15'/><trkpt "
@@ -260,6 +342,9 @@ int main(void) {
         cmocka_unit_test(test_table),
 #if NOC_HAVE_GDAL
         cmocka_unit_test(test_maps),
+        cmocka_unit_test(test_timed_lines),
+        cmocka_unit_test(test_timed_parts),
+        cmocka_unit_test(test_timed_points),
 #endif
     };
     return cmocka_run_group_tests(tests, start, finish);

@@ -448,7 +448,7 @@ static noc_status read_track_rows(csv *c, const columns *cols, geo_sink *sink, t
             continue;
         }
         const char *track = of.track >= 0 ? field(c, (size_t)of.track) : "";
-        if (!track_rows_add(rows, track, x, y, of.time >= 0 ? field(c, (size_t)of.time) : NULL))
+        if (!track_rows_add(rows, track, x, y, of.time >= 0 ? track_time(field(c, (size_t)of.time)) : NAN))
             return no_memory(c);
         size_t count = rows->rows.len;
         if (count % 4096)

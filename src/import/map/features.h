@@ -4,6 +4,7 @@
 
 #include "import/lamps/tags.h"
 #include "import/map/source.h"
+#include "import/tracks/tracks.h"
 
 #if NOC_HAVE_GDAL
 
@@ -27,6 +28,10 @@ typedef struct map_reading {
     bool lines;          /* the shape that is being read is made of lines */
     NOC_ARRAY(size_t) rings;
     NOC_ARRAY(double) xyz;
+    NOC_ARRAY(double) times; /* of the line that is being read */
+    OGRFeatureDefnH columns_of;
+    track_columns track_columns; /* of that layer */
+    track_rows rows;             /* points of tracks, of the layer */
 } map_reading;
 
 noc_status map_no_memory(const map_reading *m); /* reported */
@@ -38,6 +43,13 @@ bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag
 noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is);
 /* The same of all lines and areas of a file of OpenStreetMap, from its beginning. */
 noc_status map_read_osm_shapes(map_reading *m);
+/* tracks.c, of files that the user names as tracks. A line that tells when each of its points was reached, whose tags
+ * are collected. *is: it does. */
+noc_status map_read_timed_line(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is);
+/* A point; *is: its layer has a column of times. */
+noc_status map_read_track_point(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, const double xyz[3],
+                                bool *is);
+noc_status map_end_tracks(map_reading *m); /* hands on the tracks that a layer's points make */
 /* Layers of OpenStreetMap that are to be read; geometries of others are not assembled. */
 void map_choose_layers(map_reading *m, const char *layers);
 

@@ -146,6 +146,11 @@ noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH d
         return map_no_memory(m);
     m->lines = line;
     name_shape(m);
+    if (line && sink->named_tracks && m->format->kind != MAP_OSM) {
+        noc_status status = map_read_timed_line(m, feature, defn, is);
+        if (status || *is)
+            return status;
+    }
     return area ? read_area(m, g, type, is) : read_road(m, g, type, is);
 }
 

@@ -275,6 +275,13 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
     }
     double xyz[3] = { NAN, NAN, NAN };
     bool is_point, placed = place_of(feature, xyz, &is_point);
+    if (placed && is_point && m->writer.sink->named_tracks && m->format->kind != MAP_OSM) {
+        noc_status read = map_read_track_point(m, feature, defn, xyz, &shape);
+        if (read || shape) {
+            m->writer.seen.total[GEO_POINTS] += shape;
+            return read;
+        }
+    }
     bool table = m->writer.inventory || m->writer.strange;
     m->writer.seen.total[dimension_of(feature)] += placed;
     if (table && !is_point && (placed || m->writer.strange)) {
@@ -361,6 +368,8 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
         status = start_layer(m, layer);
     if (!status)
         status = read_features(m, layer);
+    if (!status)
+        status = map_end_tracks(m);
     /* an extract of OpenStreetMap holds all kinds of points: only where no tag tells of lamps all of them are meant */
     if (!status && m->format->kind == MAP_OSM && w->sink->named_lamps && !w->lamps) {
         w->inventory = true;
@@ -408,6 +417,8 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
     tag_buffer_free(&m.tags);
     array_free(&m.rings);
     array_free(&m.xyz);
+    array_free(&m.times);
+    track_rows_free(&m.rows);
     if (!status)
         status = lamp_writer_end(&m.writer);
     lamp_writer_free(&m.writer);

@@ -45,6 +45,7 @@ enum {
     REMOTE_FOOTPRINT, /* remote_footprint, text: id, points of each ring, their coordinates */
     REMOTE_ROAD,      /* geo_road, texts: id, name, coordinates */
     REMOTE_AREA,      /* count of rings, class, text: id, points of each ring, their coordinates */
+    REMOTE_TRACK,     /* count of parts, timed?, text: id, points of each part, their coordinates, their times */
 };
 
 typedef struct remote_head {
@@ -144,6 +145,7 @@ typedef struct remote_taker {
     bool placed, in_object;   /* a CRS was told; an object began and has not ended */
     NOC_ARRAY(size_t) rings;  /* of a polygon */
     NOC_ARRAY(double) xyz;
+    NOC_ARRAY(double) seconds; /* of a track */
 } remote_taker;
 
 /* Where `size` bytes more may be put, before bytes.len grows by what came. NULL after reporting. */

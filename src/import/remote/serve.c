@@ -22,7 +22,7 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA || kind == REMOTE_TRACK;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -91,6 +91,21 @@ static noc_status on_road(void *ctx, const geo_road *road) {
     remote_put_text(&s->out, road->name);
     remote_put(&s->out, road->xyz, road->point_count * 3 * sizeof(double));
     emit(s, REMOTE_ROAD);
+    return NOC_OK;
+}
+
+static noc_status on_track(void *ctx, const geo_track *track) {
+    serving *s = ctx;
+    uint64_t head[2] = { track->part_count, track->seconds != NULL };
+    size_t points = 0;
+    for (size_t i = 0; i < track->part_count; i++)
+        points += track->part_size[i];
+    remote_put(&s->out, head, sizeof(head));
+    remote_put_text(&s->out, track->id);
+    put_rings(s, track->part_count, track->part_size, track->xyz);
+    if (track->seconds)
+        remote_put(&s->out, track->seconds, points * sizeof(double));
+    emit(s, REMOTE_TRACK);
     return NOC_OK;
 }
 
@@ -203,6 +218,7 @@ static void serve(serving *s) {
                       .footprint = s->asked.sink.footprints ? on_footprint : NULL,
                       .road = s->asked.sink.roads ? on_road : NULL,
                       .area = s->asked.sink.roads ? on_area : NULL,
+                      .track = on_track,
                       .progress = on_progress,
                       .columns = on_columns,
                       .features = on_features,

@@ -60,8 +60,8 @@ static noc_status take_object(remote_taker *t, remote_record *one) {
     return t->sink->begin_object(t->sink->ctx, &(geo_object){ (geo_kind)o.kind, id, o.lod });
 }
 
-/* Into t->rings and t->xyz, aligned. */
-static noc_status take_rings(remote_taker *t, remote_record *one, uint64_t rings) {
+/* Into t->rings and t->xyz, aligned. least: points of one. */
+static noc_status take_rings(remote_taker *t, remote_record *one, uint64_t rings, uint64_t least) {
     const char *sizes = remote_get_array(one, rings, sizeof(uint64_t));
     uint64_t points = 0;
     if (one->bad || !t->placed || !rings)
@@ -70,7 +70,7 @@ static noc_status take_rings(remote_taker *t, remote_record *one, uint64_t rings
     for (uint64_t i = 0; i < rings; i++) {
         uint64_t size;
         memcpy(&size, sizes + i * sizeof(size), sizeof(size));
-        if (size < 3 || size > one->bytes.len)
+        if (size < least || size > one->bytes.len)
             return garbled(t);
         points += size;
         if (!array_push(&t->rings, (size_t)size))
@@ -92,7 +92,7 @@ static noc_status take_polygon(remote_taker *t, remote_record *one) {
     const char *id = remote_get_text(one);
     if (one->bad || !t->in_object || numbers[0] >= NOC_CLASS_COUNT)
         return garbled(t);
-    noc_status status = take_rings(t, one, numbers[1]);
+    noc_status status = take_rings(t, one, numbers[1], 3);
     const geo_polygon polygon = { (noc_class)numbers[0], id, t->rings.len, t->rings.data, t->xyz.data };
     return status ? status : t->sink->polygon(t->sink->ctx, &polygon);
 }
@@ -105,7 +105,7 @@ static noc_status take_footprint(remote_taker *t, remote_record *one) {
     if (one->bad || t->in_object || t->parts || !t->sink->footprint || f.height > most || f.min_height < 0 ||
         f.levels > most || f.min_level < 0 || f.roof_height > most || f.use >= NOC_USE_COUNT)
         return garbled(t);
-    noc_status status = take_rings(t, one, f.rings);
+    noc_status status = take_rings(t, one, f.rings, 3);
     const geo_footprint footprint = {
         id,           t->rings.len, t->rings.data, t->xyz.data,   f.height,
         f.min_height, f.levels,     f.min_level,   f.roof_height, (noc_building_use)f.use
@@ -147,9 +147,36 @@ static noc_status take_area(remote_taker *t, remote_record *one) {
     const char *id = remote_get_text(one);
     if (one->bad || t->in_object || t->parts || !t->sink->area || head[1] >= NOC_CLASS_COUNT)
         return garbled(t);
-    noc_status status = take_rings(t, one, head[0]);
+    noc_status status = take_rings(t, one, head[0], 3);
     const geo_polygon area = { (noc_class)head[1], id, t->rings.len, t->rings.data, t->xyz.data };
     return status ? status : t->sink->area(t->sink->ctx, &area);
+}
+
+static noc_status take_track(remote_taker *t, remote_record *one) {
+    uint64_t head[2] = { 0, 0 };
+    remote_get(one, head, sizeof(head));
+    const char *id = remote_get_text(one);
+    if (one->bad || t->in_object || t->parts || !t->sink->track || head[1] > 1)
+        return garbled(t);
+    noc_status status = take_rings(t, one, head[0], 2);
+    if (status)
+        return status;
+    size_t points = 0;
+    bool finite = true;
+    for (size_t i = 0; i < t->rings.len; i++)
+        points += t->rings.data[i];
+    const void *seconds = head[1] ? remote_get_array(one, points, sizeof(double)) : NULL;
+    if (seconds && !array_reserve(&t->seconds, points)) /* aligned */
+        return noc_no_memory(t->sink->log, t->path);
+    if (seconds)
+        memcpy(t->seconds.data, seconds, points * sizeof(double));
+    for (size_t i = 0; i < points && !one->bad; i++)
+        finite = finite && isfinite(t->xyz.data[3 * i]) && isfinite(t->xyz.data[3 * i + 1]) &&
+                 (!seconds || isfinite(t->seconds.data[i]));
+    if (one->bad || !finite)
+        return garbled(t);
+    const geo_track track = { id, t->rings.len, t->rings.data, t->xyz.data, seconds ? t->seconds.data : NULL };
+    return t->sink->track(t->sink->ctx, &track);
 }
 
 static noc_status take_object_end(remote_taker *t) {
@@ -282,6 +309,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_FOOTPRINT: return take_footprint(t, one);
     case REMOTE_ROAD: return take_road(t, one);
     case REMOTE_AREA: return take_area(t, one);
+    case REMOTE_TRACK: return take_track(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }
@@ -320,6 +348,7 @@ void remote_taker_free(remote_taker *t) {
     array_free(&t->bytes);
     array_free(&t->materials);
     array_free(&t->rings);
+    array_free(&t->seconds);
     array_free(&t->xyz);
     free(t->error);
 }

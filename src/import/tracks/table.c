@@ -32,15 +32,14 @@ track_columns track_columns_of(const char *const *names, size_t count) {
     return c;
 }
 
-bool track_rows_add(track_rows *rows, const char *track, double x, double y, const char *time) {
+bool track_rows_add(track_rows *rows, const char *track, double x, double y, double seconds) {
     uint64_t number = rows->names.len;
     if (!map_get(&rows->tracks, track, &number)) {
         const char *name = arena_strdup(&rows->arena, track);
         if (!name || !map_put(&rows->tracks, track, number, NULL) || !array_push(&rows->names, name))
             return false;
     }
-    return array_push(&rows->rows,
-                      (track_row){ x, y, time ? track_time(time) : NAN, (uint32_t)number, (uint32_t)rows->rows.len });
+    return array_push(&rows->rows, (track_row){ x, y, seconds, (uint32_t)number, (uint32_t)rows->rows.len });
 }
 
 static int compare_rows(const void *a, const void *b) {

@@ -49,8 +49,8 @@ typedef struct track_rows {
     noc_map tracks;                /* their numbers */
     noc_arena arena;
 } track_rows;
-/* time: NULL: there is none. false: memory was refused. */
-bool track_rows_add(track_rows *rows, const char *track, double x, double y, const char *time) NOC_MUST_USE;
+/* seconds: NaN: it tells no time. false: memory was refused. */
+bool track_rows_add(track_rows *rows, const char *track, double x, double y, double seconds) NOC_MUST_USE;
 /* A track's points in the order of its rows. */
 noc_status track_rows_emit(track_rows *rows, geo_sink *sink, noc_stream *stream, bool geographic);
 void track_rows_free(track_rows *rows);
