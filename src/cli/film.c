@@ -54,12 +54,23 @@ typedef struct film {
     pid_t pid;
     int to;       /* its standard input */
     FILE *said;   /* its standard error */
-    char *making; /* the file that it writes */
+    char *making; /* the file that it writes, */
+    int part;     /* which is ours */
 } film;
+
+enum { PART = STDERR_FILENO + 1 }; /* its descriptor of that file */
+
+/* A new file, whatever had that name before: what a killed run left, or a link that leads elsewhere. */
+static int open_part(film *f) {
+    if (unlink(f->making) && errno != ENOENT)
+        return errno;
+    f->part = open(f->making, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    return f->part < 0 ? errno : 0;
+}
 
 /* H.264 at a quality without visible loss, in the colours that players take a film's for; its sides must be even. */
 static int start(film *f, const char *ffmpeg, double fps, const char *comment) {
-    char rate[32], *said = cli_format("comment=%s", comment), *out = cli_format("file:%s", f->making);
+    char rate[32], *said = cli_format("comment=%s", comment), *out = cli_format("file:/dev/fd/%d", PART);
     snprintf(rate, sizeof(rate), "%.10g", fps);
     const char *arguments[] = { "ffmpeg",
                                 "-nostdin",
@@ -106,13 +117,19 @@ static int start(film *f, const char *ffmpeg, double fps, const char *comment) {
     f->said = tmpfile();
     if (!f->said || pipe2(ends, O_CLOEXEC))
         error = errno;
+    if (!error && fcntl(ends[1], F_SETFL, O_NONBLOCK)) {
+        error = errno;
+        close(ends[0]);
+        close(ends[1]);
+    }
     if (!error) {
         posix_spawn_file_actions_init(&actions);
         posix_spawnattr_init(&attributes);
         posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
         posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
         posix_spawn_file_actions_adddup2(&actions, fileno(f->said), STDERR_FILENO);
-        posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+        posix_spawn_file_actions_adddup2(&actions, f->part, PART);
+        posix_spawn_file_actions_addclosefrom_np(&actions, PART + 1);
         /* signals of the terminal are ours to pass on */
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
         posix_spawnattr_setpgroup(&attributes, 0);
@@ -129,21 +146,35 @@ static int start(film *f, const char *ffmpeg, double fps, const char *comment) {
     return error;
 }
 
+/* False: it has hung up, or we are interrupted while it takes nothing. */
+static bool feed(const film *f, const char *data, size_t size) {
+    while (size && !cli_interrupted()) {
+        ssize_t n = write(f->to, data, size);
+        if (n < 0 && errno != EAGAIN && errno != EINTR)
+            return false;
+        if (n < 0)
+            poll(&(struct pollfd){ f->to, POLLOUT, 0 }, 1, TICK);
+        data += n > 0 ? n : 0;
+        size -= n > 0 ? (size_t)n : 0;
+    }
+    return !size;
+}
+
 /* One picture's bytes. False: it cannot be read, which is told; or ffmpeg has hung up, and tells why. */
 static bool send_picture(const film *f, const char *file, bool *told) {
     char buffer[1 << 16];
-    ssize_t n = 0, sent = 0;
+    ssize_t n = 0;
+    bool sent = true;
     int fd = open(file, O_RDONLY | O_CLOEXEC);
-    while (fd >= 0 && sent >= 0 && (n = read(fd, buffer, sizeof(buffer))) > 0)
-        for (ssize_t at = 0; at < n && sent >= 0; at += sent)
-            sent = write(f->to, buffer + at, (size_t)(n - at));
+    while (fd >= 0 && sent && (n = read(fd, buffer, sizeof(buffer))) > 0)
+        sent = feed(f, buffer, (size_t)n);
     if (fd < 0 || n < 0) {
         cli_error("%s: cannot be read: %s", file, strerror(errno));
         *told = true;
     }
     if (fd >= 0)
         close(fd);
-    return fd >= 0 && n >= 0 && sent >= 0;
+    return fd >= 0 && n >= 0 && sent;
 }
 
 static bool send_pictures(const film *f, const cli_series *series, int pictures, bool *told) {
@@ -163,7 +194,7 @@ static int wait_for_end(const film *f) {
     pid_t got;
     while (!(got = waitpid(f->pid, &how, WNOHANG)) || (got < 0 && errno == EINTR)) {
         if (cli_interrupted())
-            kill(f->pid, SIGKILL);
+            kill(-f->pid, SIGKILL); /* its group, for it may be a script */
         poll(NULL, 0, TICK);
     }
     return got > 0 && WIFEXITED(how) ? WEXITSTATUS(how) : -1;
@@ -183,30 +214,29 @@ static void last_line(FILE *said, char *line, size_t size) {
 
 /* Under its name only when it is whole. */
 static bool publish(const film *f, const char *name) {
-    int fd = open(f->making, O_RDONLY | O_CLOEXEC);
-    bool done = fd >= 0 && (!fsync(fd) || errno == EINVAL) && !rename(f->making, name);
+    bool done = (!fsync(f->part) || errno == EINVAL) && !rename(f->making, name);
     if (!done)
         cli_error("%s: cannot be written: %s", name, strerror(errno));
-    if (fd >= 0)
-        close(fd);
     return done;
 }
 
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment) {
     const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
-    film f = { .to = -1, .making = cli_format("%.*s.%.200s.part", (int)(base - name), name, base) };
+    film f = { .to = -1, .part = -1, .making = cli_format("%.*s.%.200s.part", (int)(base - name), name, base) };
     struct sigaction before, ignore = { .sa_handler = SIG_IGN };
     sigaction(SIGPIPE, &ignore, &before); /* one that hangs up is an error, not our end */
-    int error = start(&f, ffmpeg, fps, comment), ended = 0;
+    int unopened = open_part(&f), error = unopened ? unopened : start(&f, ffmpeg, fps, comment), ended = 0;
     bool told = false, sent = !error && send_pictures(&f, series, pictures, &told);
     if (f.to >= 0)
         close(f.to);
-    if (error) {
+    if (unopened) {
+        cli_error("%s: cannot be written: %s", f.making, strerror(unopened));
+    } else if (error) {
         cli_error("%s: %s cannot be started: %s", name, ffmpeg, strerror(error));
     } else {
         if (told)
-            kill(f.pid, SIGKILL);
+            kill(-f.pid, SIGKILL);
         ended = wait_for_end(&f);
     }
     cli_progress_clear();
@@ -224,8 +254,10 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
     } else if (!publish(&f, name)) {
         status = NOC_ERR_IO;
     }
-    if (status)
+    if (status && f.part >= 0)
         unlink(f.making);
+    if (f.part >= 0)
+        close(f.part);
     if (f.said)
         fclose(f.said);
     free(f.making);

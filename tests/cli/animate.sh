@@ -102,6 +102,39 @@ test "$status" = 1 && grep -q 'there/f.mp4: ffmpeg made no film of the pictures,
     test "$(wc -l <err)" = 1 && test ! -e there/f.mp4 && test "$(numbers there/f-frames '*.png')" = 3
 result $? "a film that fails is one error, and leaves the pictures" "$(cat err)"
 test -z "$(find there -name '.*.part')"; result $? "and nothing else"
+
+# what stands in the film's way is no way to another file; and Ctrl-C ends it, whether it reads or not
+echo kept >elsewhere
+ln -s ../elsewhere there/.f.mp4.part
+printf '#!/bin/sh\nfor last; do :; done\ncat >"${last#file:}"\n' >bin/ffmpeg
+film -o there/f.mp4
+test "$status" = 0 && test "$(cat elsewhere)" = kept && test ! -L there/f.mp4 && grep -aq IEND there/f.mp4
+result $? "a link of the unfinished film's name is not followed"
+mkdir there/.k.mp4.part
+film -o there/k.mp4
+test "$status" = 1 && grep -q 'there/.k.mp4.part: cannot be written' err && rmdir there/.k.mp4.part
+result $? "nor is a folder" "$(cat err)"
+printf '#!/bin/sh\ntouch started\nsleep 1000\n' >bin/ffmpeg
+interrupted_film() {
+    rm -f started
+    PATH=$PWD/bin:$path env --default-signal=INT "$program" render lamp.yaml --animate --frames 3 --samples 1 \
+        -o there/s-%d.png --mp4 >out 2>err </dev/null &
+    pid=$!
+    tries=0
+    until test -e started || test $tries -gt 600; do sleep 0.1; tries=$((tries + 1)); done
+    kill -INT $pid
+    tries=0
+    while kill -0 $pid 2>/dev/null && test $tries -lt 300; do sleep 0.1; tries=$((tries + 1)); done
+    kill -KILL $pid 2>/dev/null
+    wait $pid
+    status=$?
+}
+interrupted_film
+test "$status" = 130 && test ! -e there/.s.mp4.part; result $? "one Ctrl-C ends a film that hangs" "$status"
+head -c 300000 /dev/zero >>there/s-1.png # more than a pipe holds
+interrupted_film
+test "$status" = 130 && test ! -e there/.s.mp4.part; result $? "and one that takes no pictures" "$status"
+rm -r there/s-* started
 without() { (PATH=/nowhere && export PATH && exec "$program" "$@") >out 2>err </dev/null; status=$?; }
 without render lamp.yaml --animate --frames 3 --samples 1 -o there/g-%d.png
 test "$status" = 0 && grep -q 'film      none: the program ffmpeg is not on PATH' out
