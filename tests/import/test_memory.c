@@ -154,6 +154,30 @@ static void citygml(void **state) {
     refuse_each("CityGML, gzip, looked at", &(import){ { "citygml/whole.gml.gz" }, .inspect = true });
 }
 
+/* Two images whose files hold the same. */
+static void images(void **state) {
+    noc_image *image = noc_image_create(2, 2, NULL);
+    assert_int_equal(noc_image_write(image, path_of("a.png"), NULL, NULL, NULL), NOC_OK);
+    assert_int_equal(noc_image_write(image, path_of("b.png"), NULL, NULL, NULL), NOC_OK);
+    noc_image_destroy(image);
+#define CORNERS(x) x " 0 0 " x " 5 0 " x " 5 5 " x " 0 5 " x " 0 0"
+#define TEXTURED(image, ring)                                                                                          \
+    "<app:surfaceDataMember><app:ParameterizedTexture><app:imageURI>" image "</app:imageURI>"                          \
+    "<app:target uri='#w'><app:TexCoordList><app:textureCoordinates ring='#" ring "'>0 0 1 0 1 1 0 1 0 0"              \
+    "</app:textureCoordinates></app:TexCoordList></app:target></app:ParameterizedTexture></app:surfaceDataMember>"
+#define WALL(ring, x)                                                                                                  \
+    "<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing gml:id='" ring                                      \
+    "'><gml:posList>" CORNERS(x) "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>"
+    write_text(
+        "images.gml",
+        "<core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' "
+        "xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
+        "xmlns:app='http://www.opengis.net/citygml/appearance/2.0' xmlns:gml='http://www.opengis.net/gml'>" BUILDING(
+            "house", WALL("p", "0") WALL("q", "9")) "<app:appearanceMember><app:Appearance>" TEXTURED("a.png", "p")
+            TEXTURED("b.png", "q") "</app:Appearance></app:appearanceMember></core:CityModel>");
+    refuse_each("CityGML with images", &(import){ { "images.gml" } });
+}
+
 static void cityjson(void **state) {
     refuse_each("CityJSON", &(import){ { "cityjson/whole.json" }, .all = true });
     refuse_each("CityJSON with appearances", &(import){ { "cityjson/looks.json" } });
@@ -434,6 +458,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coordinate_systems),
         cmocka_unit_test(citygml),
+        cmocka_unit_test(images),
         cmocka_unit_test(cityjson),
         cmocka_unit_test(gltf),
         cmocka_unit_test(ply),

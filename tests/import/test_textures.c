@@ -71,6 +71,53 @@ static void test_broken(void **state) {
     noc_scene_destroy(s);
 }
 
+static void copy_file(const char *from, const char *to, size_t most) {
+    char at[96], bytes[1000];
+    snprintf(at, sizeof(at), "%s/%s", folder, from);
+    FILE *f = fopen(at, "rb");
+    assert_non_null(f);
+    size_t size = fread(bytes, 1, NOC_MIN(most, sizeof(bytes)), f);
+    fclose(f);
+    snprintf(at, sizeof(at), "%s/%s", folder, to);
+    assert_non_null(f = fopen(at, "wb"));
+    assert_true(fwrite(bytes, 1, size, f) == size && !fclose(f));
+}
+
+static int texture_of_wall(const noc_scene *s, int number) { return wall_material(s, number)->texture; }
+
+/* Files that hold the same are one texture, whatever their names; what is of no use is counted for each. */
+static void test_alike(void **state) {
+    (void)state;
+    write_image("a.png");
+    copy_file("a.png", "b.png", 1000);
+    copy_file("a.png", "c.png", 40);
+    copy_file("c.png", "d.png", 40);
+    write_file("city.gml", HEAD TEXTURE("a.png", "p1r", SQUARE) TEXTURE("c.png", "p2r", SQUARE)
+                               TEXTURE("b.png", "p3r", SQUARE) TEXTURE("d.png", "p4r", SQUARE) TAIL);
+    noc_report *report;
+    noc_scene *s = load("city.gml", true, &report);
+    const noc_report_file *file = noc_report_get_file(report, 0);
+    int first = texture_of_wall(s, 0);
+    assert_true(first > 0 && texture_of_wall(s, 2) == first && s->textures.len == 1);
+    assert_true(texture_of_wall(s, 1) == 0 && texture_of_wall(s, 3) == 0 && file->images == 2);
+    assert_int_equal(told(report, "broken image"), 2);
+    noc_report_destroy(report);
+    noc_scene_destroy(s);
+    /* one that ends otherwise at its edges is another */
+    write_file(
+        "city.gml",
+        HEAD TEXTURE("a.png", "p1r",
+                     SQUARE) "<app:surfaceDataMember><app:ParameterizedTexture>"
+                             "<app:imageURI>b.png</app:imageURI><app:wrapMode>mirror</app:wrapMode>"
+                             "<app:target uri='#p'><app:TexCoordList><app:textureCoordinates ring='#p3r'>" SQUARE
+                             "</app:textureCoordinates></app:TexCoordList></app:target></app:ParameterizedTexture>"
+                             "</app:surfaceDataMember>" TAIL);
+    s = load("city.gml", true, &report);
+    assert_true(s->textures.len == 2 && texture_of_wall(s, 0) != texture_of_wall(s, 2));
+    noc_report_destroy(report);
+    noc_scene_destroy(s);
+}
+
 /* Each takes memory, whatever little it says. */
 static void test_many_materials(void **state) {
     (void)state;
@@ -96,6 +143,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_citygml),
         cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_alike),
         cmocka_unit_test(test_many_materials),
     };
     return run_looks(tests, NOC_COUNT(tests));

@@ -92,9 +92,12 @@ typedef struct look_group {
 typedef struct scene_image {
     const char *path; /* in importer.names */
     noc_wrap wrap;
-    size_t input; /* the first that names it */
+    size_t input;        /* the first that names it */
+    uint64_t sum, bytes; /* of its file */
     int width, height, leave_out;
-    int texture; /* the scene's; 0: it was of no use */
+    uint32_t like;      /* + 1: an image before it, whose file holds the same; 0: none */
+    const char *reason; /* why it is of no use or damaged; NULL: it is neither */
+    int texture;        /* the scene's; 0: it was of no use */
 } scene_image;
 
 typedef struct image_use {

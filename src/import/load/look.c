@@ -4,6 +4,7 @@
 #include "import/load/load.h"
 
 #include "image/pixels.h"
+#include "noct/noct.h"
 
 #include <math.h>
 
@@ -180,36 +181,35 @@ typedef struct image_job {
     bool whole; /* its pixels too; else its size */
     pixel_bytes pixels;
     noc_status status;
-    const char *why;
 } image_job;
 
 static void run_job(void *ctx, size_t item, int worker) {
     image_job *job = (image_job *)ctx + item;
+    scene_image *image = job->image;
+    const char *why;
     uint8_t *data;
     size_t size;
     (void)worker;
-    job->status = read_bytes(job->im, job->image, &data, &size, &job->why);
-    if (!job->status && job->whole)
-        job->status = pixels_read(data, size, job->image->path, NULL, &job->pixels);
-    else if (!job->status)
-        job->status = pixels_size(data, size, job->image->path, NULL, &job->image->width, &job->image->height);
+    job->status = read_bytes(job->im, image, &data, &size, &why);
+    if (!job->status && job->whole) {
+        job->status = pixels_read(data, size, image->path, NULL, &job->pixels);
+    } else if (!job->status) {
+        job->status = pixels_size(data, size, image->path, NULL, &image->width, &image->height);
+        image->sum = noct_sum(data, size);
+        image->bytes = size;
+    }
     if (job->status == NOC_ERR_UNSUPPORTED)
-        job->why = "image of a format that is not read (PNG and JPEG are)";
-    else if (job->status == NOC_ERR_FORMAT && !job->why)
-        job->why = "broken image";
+        image->reason = "image of a format that is not read (PNG and JPEG are)";
+    else if (job->status == NOC_ERR_FORMAT)
+        image->reason = why ? why : "broken image";
+    else if (!job->status && job->pixels.damaged)
+        image->reason = "damaged image";
     free(data);
 }
 
-/* Counts what is of no use; only memory that is refused is a failure. */
-static noc_status told(importer *im, const image_job *job) {
-    geo_issues *issues = im->inputs[job->image->input].issues;
-    if (job->status == NOC_ERR_MEMORY)
-        return noc_no_memory(im->log, job->image->path);
-    if (job->status)
-        geo_issue(issues, GEO_GUESSED, job->why, job->image->path);
-    else if (job->pixels.damaged)
-        geo_issue(issues, GEO_GUESSED, "damaged image", job->image->path);
-    return NOC_OK;
+/* Only memory that is refused is a failure. */
+static noc_status failure_of(const importer *im, const image_job *job) {
+    return job->status == NOC_ERR_MEMORY ? noc_no_memory(im->log, job->image->path) : NOC_OK;
 }
 
 /* Of all images, which are of no use where theirs stays 0. */
@@ -219,16 +219,57 @@ static noc_status read_sizes(importer *im, noc_pool *pool, image_job *jobs) {
         jobs[i] = (image_job){ .im = im, .image = &im->images.data[i] };
     noc_pool_run(pool, im->images.len, run_job, jobs);
     for (size_t i = 0; i < im->images.len && !status; i++) {
-        status = told(im, &jobs[i]);
+        status = failure_of(im, &jobs[i]);
         if (jobs[i].status)
             im->images.data[i].width = im->images.data[i].height = 0;
     }
     return status;
 }
 
+/* Do both files hold the same? */
+static noc_status compare(const importer *im, const scene_image *a, const scene_image *b, bool *same) {
+    uint8_t *of_a, *of_b = NULL;
+    size_t bytes_a, bytes_b;
+    const char *why;
+    noc_status status = read_bytes(im, a, &of_a, &bytes_a, &why);
+    if (!status)
+        status = read_bytes(im, b, &of_b, &bytes_b, &why);
+    *same = !status && bytes_a == bytes_b && !memcmp(of_a, of_b, bytes_a);
+    free(of_a);
+    free(of_b);
+    return status == NOC_ERR_MEMORY ? noc_no_memory(im->log, a->path) : NOC_OK;
+}
+
+/* Images are often given once for each building: those whose files hold the same become one texture. */
+static noc_status find_alike(importer *im) {
+    noc_map first = { 0 };
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < im->images.len && !status; i++) {
+        scene_image *image = &im->images.data[i];
+        uint64_t before;
+        bool same = false;
+        char *key = image->width ? noc_format("%d %llu %llx", (int)image->wrap, (unsigned long long)image->bytes,
+                                              (unsigned long long)image->sum)
+                                 : NULL;
+        if (!image->width)
+            continue;
+        if (!key)
+            status = noc_no_memory(im->log, image->path);
+        else if (map_get(&first, key, &before))
+            status = compare(im, &im->images.data[before], image, &same);
+        else if (!map_put(&first, key, i, NULL))
+            status = noc_no_memory(im->log, image->path);
+        image->like = same ? (uint32_t)before + 1 : 0;
+        free(key);
+    }
+    map_free(&first);
+    return status;
+}
+
+/* Those that are like one before it take no more memory. */
 static double bytes_of(const scene_image *i) {
     int width = NOC_MAX(i->width >> i->leave_out, 1), height = NOC_MAX(i->height >> i->leave_out, 1);
-    return i->width ? (double)noc_texture_words(width, height) * sizeof(uint32_t) : 0;
+    return i->width && !i->like ? (double)noc_texture_words(width, height) * sizeof(uint32_t) : 0;
 }
 
 /* Leaves finest levels out until all fit: of the largest first, so that none is finer than it need be. */
@@ -258,13 +299,14 @@ static void fit(importer *im) {
 static size_t some(const importer *im, size_t first) {
     double sum = 0;
     for (; first < im->images.len && sum < PIXELS_AT_ONCE; first++)
-        sum += (double)im->images.data[first].width * im->images.data[first].height;
+        if (!im->images.data[first].like)
+            sum += (double)im->images.data[first].width * im->images.data[first].height;
     return first;
 }
 
 static noc_status add_image(importer *im, image_job *job) {
     scene_image *image = job->image;
-    noc_status status = told(im, job);
+    noc_status status = failure_of(im, job);
     if (status || job->status)
         return status;
     noc_texture texture = { .width = job->pixels.width,
@@ -273,10 +315,7 @@ static noc_status add_image(importer *im, image_job *job) {
                             .wrap = image->wrap,
                             .leave_out = image->leave_out };
     image->texture = noc_scene_add_texture(im->scene, &texture);
-    if (image->texture < 0)
-        return NOC_ERR_MEMORY;
-    im->inputs[image->input].file.images++;
-    return NOC_OK;
+    return image->texture < 0 ? NOC_ERR_MEMORY : NOC_OK;
 }
 
 static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
@@ -286,7 +325,7 @@ static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
         size_t count = 0;
         end = some(im, first);
         for (size_t i = first; i < end; i++)
-            if (im->images.data[i].width)
+            if (im->images.data[i].width && !im->images.data[i].like)
                 jobs[count++] = (image_job){ .im = im, .image = &im->images.data[i], .whole = true };
         noc_pool_run(pool, count, run_job, jobs);
         for (size_t i = 0; i < count; i++) {
@@ -298,6 +337,22 @@ static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
             status = NOC_ERR_CANCELLED;
     }
     return status;
+}
+
+/* Those that are like others have what became of them; counts what was read, and what is of no use. */
+static void count_images(importer *im) {
+    for (size_t i = 0; i < im->images.len; i++) {
+        scene_image *image = &im->images.data[i];
+        if (image->like) {
+            const scene_image *first = &im->images.data[image->like - 1];
+            image->texture = first->texture;
+            image->reason = first->reason;
+            im->report->images_reduced += first->leave_out > 0;
+        }
+        im->inputs[image->input].file.images += image->texture > 0;
+        if (image->reason)
+            geo_issue(im->inputs[image->input].issues, GEO_GUESSED, image->reason, image->path);
+    }
 }
 
 /* Surfaces have the colours of their images; where one is of no use, those that the file gives them besides. */
@@ -323,9 +378,13 @@ noc_status look_read_images(importer *im) {
     if (!status)
         status = read_sizes(im, pool, jobs);
     if (!status)
+        status = find_alike(im);
+    if (!status)
         fit(im);
     if (!status)
         status = read_pixels(im, pool, jobs);
+    if (!status)
+        count_images(im);
     if (!status)
         status = use_images(im);
     free(jobs);
