@@ -124,7 +124,8 @@ static bool window_fits(const noc_scene *s, const kept_window *k) {
               k->level <= 1;
     for (int c = 0; c < 3; c++)
         ok = ok && k->emission[c] >= 0 && k->emission[c] <= 1e12f;
-    return ok && (k->removed || !(s->lights.data[k->light].flags & NOC_LIGHT_FREE));
+    uint32_t own = NOC_LIGHT_OWNED | NOC_LIGHT_MOVES | NOC_LIGHT_FREE; /* a mesh's, which goes with that alone */
+    return ok && (k->removed || (s->lights.data[k->light].flags & own) == NOC_LIGHT_OWNED);
 }
 
 noc_status noc_kept_windows(noct_file *f, noc_scene *s) {

@@ -32,13 +32,12 @@ void noc_keep_models(noct_writer *w, const noc_scene *s) {
 
 /* Of its triangles; min > max where it has none. */
 static bool bounds_fit(const kept_model *k) {
-    bool ok = true;
+    bool none = true, ok = true;
     for (int c = 0; c < 3; c++) {
-        bool none = k->bounds_min[c] == INFINITY && k->bounds_max[c] == -INFINITY;
-        ok = ok &&
-             (none || (k->bounds_min[c] >= -1e7 && k->bounds_max[c] <= 1e7 && k->bounds_min[c] <= k->bounds_max[c]));
+        none = none && k->bounds_min[c] == INFINITY && k->bounds_max[c] == -INFINITY;
+        ok = ok && k->bounds_min[c] >= -1e7 && k->bounds_max[c] <= 1e7 && k->bounds_min[c] <= k->bounds_max[c];
     }
-    return ok;
+    return none || ok;
 }
 
 static noc_status take_model(noct_file *f, noc_scene *s, const kept_model *k, noc_light_record *lights,
@@ -99,12 +98,16 @@ void noc_keep_instances(noct_writer *w, const noc_scene *s) {
 }
 
 static bool transform_fits(const float m[12]) {
-    double square = (double)m[0] * m[0] + (double)m[4] * m[4] + (double)m[8] * m[8];
-    return noc_kept_finite(m, 12, 1e7f) && square > 0.99e-6 && square < 1.01e6;
+    double exact[12];
+    for (int i = 0; i < 12; i++)
+        exact[i] = m[i];
+    return noc_transform_fits(exact, 1.01);
 }
 
-/* One that stands, with its lights, which are its own. */
-static noc_status take_instance(noct_file *f, noc_scene *s, const kept_instance *k, const uint32_t *lights) {
+/* One that stands, with its lights, which are its own: edits take them out with it, and have room for each once.
+ * owned: of all lights, those that earlier ones have. */
+static noc_status take_instance(noct_file *f, noc_scene *s, const kept_instance *k, const uint32_t *lights,
+                                bool *owned) {
     noc_scene_model *model = &s->models.data[k->model - 1];
     noc_scene_instance *in = &s->instances.data[s->instances.len - 1];
     in->lights = noc_calloc(NOC_MAX(model->lights.len, 1u), sizeof(*in->lights));
@@ -114,9 +117,10 @@ static noc_status take_instance(noct_file *f, noc_scene *s, const kept_instance 
     model->instances++;
     for (size_t i = 0; i < model->lights.len; i++) {
         uint32_t flags = lights[i] < s->lights.len ? s->lights.data[lights[i]].flags : 0;
-        if (!(flags & NOC_LIGHT_OWNED) || !(flags & NOC_LIGHT_MOVES) || flags & NOC_LIGHT_FREE)
+        if (!(flags & NOC_LIGHT_OWNED) || !(flags & NOC_LIGHT_MOVES) || flags & NOC_LIGHT_FREE || owned[lights[i]])
             return noct_wrong(f, "instance %zu has lights of others", s->instances.len - 1);
         in->lights[i] = lights[i];
+        owned[lights[i]] = true;
     }
     return NOC_OK;
 }
@@ -129,8 +133,11 @@ noc_status noc_kept_instances(noct_file *f, noc_scene *s) {
         empty += !k[i].model;
     if (count >= INT32_MAX)
         return noct_wrong(f, "it has %zu instances", count);
-    if (!array_reserve(&s->instances, count) || !array_reserve(&s->instance_slots.free, empty))
+    bool *owned = noc_calloc(s->lights.len, sizeof(*owned));
+    if (!owned || !array_reserve(&s->instances, count) || !array_reserve(&s->instance_slots.free, empty)) {
+        free(owned);
         return noct_no_memory(f);
+    }
     for (size_t i = 0; i < count && !f->status; i++) {
         s->instances.data[s->instances.len++] = (noc_scene_instance){ .model = 0 };
         memcpy(s->instances.data[i].transform, k[i].transform, sizeof(k[i].transform));
@@ -140,8 +147,9 @@ noc_status noc_kept_instances(noct_file *f, noc_scene *s) {
         else if (k[i].model > s->models.len || !transform_fits(k[i].transform) || own > lights - taken)
             noct_wrong(f, "instance %zu is none", i);
         else
-            take_instance(f, s, &k[i], light + taken);
+            take_instance(f, s, &k[i], light + taken, owned);
         taken += own;
     }
+    free(owned);
     return f->status || taken == lights ? f->status : noct_wrong(f, "lights of no instance");
 }

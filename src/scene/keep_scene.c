@@ -60,7 +60,7 @@ noc_status noc_kept_scene(noct_file *f, noc_scene *s) {
     for (int k = 0; k < 3; k++)
         bounds = bounds && s->bounds_min[k] <= s->bounds_max[k];
     ok = ok && get_doubles(&c, camera->eye, 3, 1e7) && get_doubles(&c, camera->target, 3, 1e7) &&
-         get_doubles(&c, camera->up, 3, 1e7) && get_doubles(&c, &camera->fov_deg, 1, 180);
+         get_doubles(&c, camera->up, 3, 1e7) && get_doubles(&c, &camera->fov_deg, 1, 179) && camera->fov_deg >= 0;
     s->triangles_dropped = noct_get_u64(&c);
     s->triangles_flat = noct_get_u64(&c);
     s->backdrop_first = noct_get_u32(&c);
@@ -125,14 +125,14 @@ void noc_keep_profiles(noct_writer *w, const noc_scene *s) {
 }
 
 /* A head's table lies in the cells: core/profile.h looks up what it says. */
-static bool fits(const noc_scene *s, size_t number) {
+static bool fits(const noc_scene *s, size_t number, size_t heads) {
     const float *head = s->profile_cells.data + 4 * number;
     uint32_t place, steps;
     memcpy(&place, head, sizeof(place));
     memcpy(&steps, head + 1, sizeof(steps));
     uint64_t cells = (uint64_t)(steps >> 16) * (steps & 0xffff);
-    return cells && place >= s->profiles.len && place + cells <= s->profile_cells.len / 4 && head[2] > 0 &&
-           head[2] < 1e9f && head[3] > 0 && head[3] <= 1;
+    return cells && place >= heads && place + cells <= s->profile_cells.len / 4 && head[2] > 0 && head[2] < 1e9f &&
+           head[3] > 0 && head[3] <= 1;
 }
 
 static bool check_cells(const void *ctx, size_t first, size_t end) {
@@ -159,7 +159,7 @@ noc_status noc_kept_profiles(noct_file *f, noc_scene *s) {
             return noct_wrong(f, "profile %zu is none", i + 1);
     }
     for (size_t i = 0; i < count; i++)
-        if (!fits(s, i))
+        if (!fits(s, i, heads))
             return noct_wrong(f, "the table of profile %zu lies elsewhere", i + 1);
     if (count && !noct_each(f, cells - heads, check_cells, table + 4 * heads))
         return noct_wrong(f, "an intensity of a profile is none");

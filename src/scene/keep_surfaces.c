@@ -94,6 +94,8 @@ static bool uv_fits(const noc_scene *s, size_t mesh) {
 static noc_status take_meshes(noct_file *f, noc_scene *s) {
     size_t count, triangle = 0, vertex = 0;
     const kept_mesh *k = noct_array(f, "meshes", sizeof(*k), &count);
+    if (count > INT32_MAX)
+        return noct_wrong(f, "it has %zu meshes", count);
     if (!array_reserve(&s->meshes, count))
         return noct_no_memory(f);
     for (size_t i = 0; i < count; i++) {

@@ -30,18 +30,17 @@ int noc_scene_add_model(noc_scene *scene, const char *name) {
     return (int)models + 1;
 }
 
-/* Rotation and one scale to a part in ten thousand, no mirror, within the world. */
-static bool read_transform(const double in[12], float out[12]) {
+bool noc_transform_fits(const double in[12], double slack) {
     double c[3][3], square[3]; /* columns */
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < 3; i++)
             c[k][i] = in[4 * i + k];
         square[k] = c[k][0] * c[k][0] + c[k][1] * c[k][1] + c[k][2] * c[k][2];
-        if (!(fabs(in[4 * k + 3]) < 1e7))
+        if (!(fabs(in[4 * k + 3]) < 1e7 * slack))
             return false;
     }
-    double scale = sqrt(square[0]), most = 1e-4 * square[0], turn = 0;
-    if (!(scale >= 1e-3 && scale <= 1e3))
+    double scale = sqrt(square[0]), most = 1e-4 * slack * square[0], turn = 0;
+    if (!(scale * slack >= 1e-3 && scale <= 1e3 * slack))
         return false;
     for (int k = 0; k < 3; k++) {
         const double *a = c[k], *b = c[(k + 1) % 3];
@@ -49,9 +48,13 @@ static bool read_transform(const double in[12], float out[12]) {
             return false;
         turn += c[0][k] * (c[1][(k + 1) % 3] * c[2][(k + 2) % 3] - c[1][(k + 2) % 3] * c[2][(k + 1) % 3]);
     }
+    return turn > 0;
+}
+
+static bool read_transform(const double in[12], float out[12]) {
     for (int i = 0; i < 12; i++)
         out[i] = (float)in[i];
-    return turn > 0;
+    return noc_transform_fits(in, 1);
 }
 
 static const char bad_transform[] = "its transform is not a rotation, one scale in 0.001..1000 and a place within "

@@ -319,6 +319,9 @@ void noc_scene_unlock_commit(noc_scene *s);
 noc_scene *noc_scene_adding(noc_scene *s);
 /* A copy in the scene's names, of NULL too. false: no memory, reported. */
 bool noc_scene_keep_name(noc_scene *s, const char *name, const char **kept);
+/* model.c: a rotation and one scale to a part in ten thousand, no mirror, within the world. slack: 1, and more where
+ * it was rounded since. */
+bool noc_transform_fits(const double transform[12], double slack);
 /* The model of this number, published or staged; NULL where there is none. */
 noc_scene_model *noc_scene_model_of(const noc_scene *s, int model);
 /* The group of that name, which is added where there is none. 0: memory was refused, or there are too many groups. */

@@ -145,17 +145,62 @@ static void test_hostile(void **state) {
     free(b.data);
 }
 
+static uint32_t *section(bytes b, const char *name, size_t *words) {
+    const noct_head *head = (const noct_head *)b.data;
+    const noct_entry *e = (const noct_entry *)(b.data + sizeof(*head)), *end = e + head->sections;
+    while (e < end && strncmp(e->name, name, sizeof(e->name)))
+        e++;
+    assert_true(e < end && e->bytes);
+    *words = (size_t)e->bytes / 4;
+    return (uint32_t *)(void *)(b.data + e->offset);
+}
+
+static uint32_t bits_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof(bits));
+    return bits;
+}
+
+/* What no single number tells: two things that share what is one's own, and numbers that do not go together. */
+static void test_together(void **state) {
+    (void)state;
+    save_city();
+    bytes b = read_all();
+    size_t words[4];
+    uint32_t *lit = section(b, "instlit", &words[0]), *instances = section(b, "instance", &words[1]),
+             *windows = section(b, "windows", &words[2]), *tables = section(b, "tables", &words[3]);
+    size_t lights = words[0] / 2; /* of each of the two that stand */
+    assert_true(lights > 1 && words[1] == 3 * 13 && !instances[13] && instances[0] == instances[26]);
+    assert_true(windows[0] < windows[7] && windows[7] < lit[0]); /* lights of cars come last */
+    size_t own = words[2] / 7 - 1;
+    const struct {
+        uint32_t *word, value;
+        const char *what;
+    } wrong[] = { { &lit[lights], lit[0], "instance 2 has lights of others" },
+                  { &lit[1], lit[0], "instance 0 has lights of others" },
+                  { &lit[0], windows[0], "instance 0 has lights of others" },
+                  { &instances[1 + 1], bits_of(1), "instance 0 is none" },      /* a shear */
+                  { &instances[27 + 10], bits_of(-1), "instance 2 is none" },   /* a mirror */
+                  { &instances[1 + 10], bits_of(1e-9f), "instance 0 is none" }, /* flat */
+                  { &windows[7 * own], lit[0], "window" },
+                  { &tables[0], 1, "the table of profile 1 lies elsewhere" } }; /* among the heads */
+    for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
+        uint32_t before = *wrong[i].word;
+        *wrong[i].word = wrong[i].value;
+        mend(b);
+        assert_refused_as(b, wrong[i].what);
+        *wrong[i].word = before;
+    }
+    free(b.data);
+}
+
 /* Meshes that show lights of others: an edit of such a scene would take out more than it has made room for. */
 static void test_shown(void **state) {
     (void)state;
     save_city();
     bytes b = read_all();
-    const noct_head *head = (const noct_head *)b.data;
-    const noct_entry *e = (const noct_entry *)(b.data + sizeof(*head)), *end = e + head->sections;
-    while (e < end && strncmp(e->name, "shown", sizeof(e->name)))
-        e++;
-    assert_true(e < end);
-    uint32_t *shown = (uint32_t *)(void *)(b.data + e->offset), count = (uint32_t)(e->bytes / sizeof(*shown)), last = 0;
+    size_t words;
+    uint32_t *shown = section(b, "shown", &words), count = (uint32_t)words, last = 0;
     noc_scene *s = load_again(NULL);
     size_t owned = 0, shape = count;
     while (owned < s->lights.len &&
@@ -277,8 +322,9 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_damage), cmocka_unit_test(test_hostile),
-                                        cmocka_unit_test(test_shown),  cmocka_unit_test(test_alone),
-                                        cmocka_unit_test(test_recipe), cmocka_unit_test(test_memory) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_damage),   cmocka_unit_test(test_hostile),
+                                        cmocka_unit_test(test_together), cmocka_unit_test(test_shown),
+                                        cmocka_unit_test(test_alone),    cmocka_unit_test(test_recipe),
+                                        cmocka_unit_test(test_memory) };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

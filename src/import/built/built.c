@@ -85,8 +85,10 @@ noc_status built_read(importer *im, const char *path) {
         status = built_read_report(&f, im->report);
     if (!status)
         status = noc_kept_done(&f, s);
-    if (status)
+    if (status) {
         noc_kept_forget(s);
+        im->report->rule_count = 0;
+    }
     noc_kept_take(&f, s);
     noct_close_file(&f);
     return status;
