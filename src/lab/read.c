@@ -95,6 +95,8 @@ static noc_status check_inputs(const S *spec, const char *place, json_t *object,
         status = check_input(spec, place, scene->import.lamps.text[i]);
     for (size_t i = 0; i < scene->import.tracks.count && !status; i++)
         status = check_input(spec, place, scene->import.tracks.text[i]);
+    if (scene->import.environment && !status)
+        status = check_input(spec, place, scene->import.environment);
     return status;
 }
 
@@ -167,6 +169,8 @@ static noc_status read_inputs(S *spec, const char *place, json_t *inputs, lab_sc
         lamps->text[i] = resolve(spec, lamps->text[i]);
     for (i = 0; i < tracks->count; i++)
         tracks->text[i] = resolve(spec, tracks->text[i]);
+    if (scene->import.environment)
+        scene->import.environment = resolve(spec, scene->import.environment);
     return spec->arena.refused ? lab_spec_no_memory(spec) : NOC_OK;
 }
 

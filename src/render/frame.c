@@ -114,13 +114,18 @@ void noc_make_frame_constants(const noc_render_params *p, uint32_t frame, bool h
                               .sky = (float)p->sky };
 }
 
+/* Less light than that, and a map is black: what divides by it stays a float. */
+#define BLACK 1e-20
+#define MOST_SCALE 1e27 /* times the brightest texel it is a float, too */
+
 void noc_make_frame_environment(const noc_scene *scene, const noc_render_params *p, frame_constants *out) {
     const noc_environment *e = scene->environment;
     if (!e)
         return;
-    double scale = p->environment_scale * (p->environment_lux > 0 && e->lux > 0 ? p->environment_lux / e->lux : 1);
+    bool scaled = p->environment_lux > 0 && e->lux > BLACK;
+    double scale = NOC_MIN(p->environment_scale * (scaled ? p->environment_lux / e->lux : 1), MOST_SCALE);
     double turn = fmod(0.75 - p->environment_rotation / 360 + 2, 1); /* a middle in the north has its left edge south */
-    bool lights = p->environment_light && e->power > 0 && scale > 0;
+    bool lights = p->environment_light && e->power > BLACK && scale > 0;
     out->flags |= FRAME_ENVIRONMENT | (lights ? FRAME_MAP_LIGHTS : 0);
     out->environment_width = (uint32_t)e->light_width;
     out->environment_height = (uint32_t)e->light_height;
@@ -128,6 +133,6 @@ void noc_make_frame_environment(const noc_scene *scene, const noc_render_params 
     out->backdrop_height = (uint32_t)e->height;
     out->environment_turn = (float)turn < 1 ? (float)turn : 0;
     out->environment_scale = (float)scale;
-    out->environment_inverse_power = e->power > 0 ? (float)(1 / e->power) : 0;
+    out->environment_inverse_power = e->power > BLACK ? (float)(1 / e->power) : 0;
     out->environment_level = (float)(scale * e->lux / M_PI);
 }

@@ -124,27 +124,22 @@ bool noc_environment_fits(int width, int height) {
     return (int64_t)width * height < NOC_ENVIRONMENT_TEXELS;
 }
 
-noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *map) {
-    if (!scene || (map && !map->rgb))
-        return noc_null(scene ? scene->log : NULL, __func__);
+noc_status noc_scene_name_environment(noc_scene *scene, const noc_image *map, const char *name) {
     noc_environment *e = NULL;
     size_t bad = 0;
-    if (map && (map->height < 1 || map->width != 2 * map->height))
-        return noc_error(
-            scene->log, NOC_ERR_ARGUMENT,
-            "environment: a picture of %d x %d pixels is not equirectangular: that is twice as wide as high",
-            map->width, map->height);
+    if (map && (map->height < 1 || map->width % 2 || map->width / 2 != map->height))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT,
+                         "%s: a picture of %d x %d pixels is not equirectangular: that is twice as wide as high", name,
+                         map->width, map->height);
     if (map && !noc_environment_fits(map->width, map->height))
         return noc_error(scene->log, NOC_ERR_ARGUMENT,
-                         "environment: a picture of %d x %d pixels is too large, and cannot be halved to below %d",
+                         "%s: a picture of %d x %d pixels is too large, and cannot be halved to below %d", name,
                          map->width, map->height, NOC_ENVIRONMENT_TEXELS);
     if (map && !(e = noc_environment_make(map, &bad)))
-        return noc_error(scene->log, NOC_ERR_MEMORY, "environment: no memory for %d x %d pixels", map->width,
-                         map->height);
+        return noc_error(scene->log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", name, map->width, map->height);
     if (bad)
-        noc_warn(scene->log,
-                 "environment: %zu of %zu pixels are negative, not finite or over 1e9, and are taken as 0 or 1e9", bad,
-                 (size_t)map->width * (size_t)map->height);
+        noc_warn(scene->log, "%s: %zu of %zu pixels are negative, not finite or over 1e9, and are taken as 0 or 1e9",
+                 name, bad, (size_t)map->width * (size_t)map->height);
     noc_scene_lock_commit(scene); /* frames read it */
     noc_environment *before = scene->environment;
     scene->environment = e;
@@ -153,4 +148,10 @@ noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *map) {
     noc_scene_unlock_commit(scene);
     noc_environment_free(before);
     return NOC_OK;
+}
+
+noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *map) {
+    if (!scene || (map && !map->rgb))
+        return noc_null(scene ? scene->log : NULL, __func__);
+    return noc_scene_name_environment(scene, map, "environment");
 }

@@ -414,6 +414,8 @@ static inline void noc_range_add(noc_range *r, size_t i) {
 /* environment.c: sine of the elevation of a row's upper edge, of so many rows. */
 double noc_environment_sine(int row, int rows);
 void noc_environment_free(noc_environment *e); /* NULL is allowed */
+/* noc_scene_set_environment, whose messages call the picture that. */
+noc_status noc_scene_name_environment(noc_scene *scene, const noc_image *map, const char *name);
 /* Of a picture that is twice as wide as high, and fits: can be taken down to as few texels as are drawn from. bad:
  * pixels that are not light. NULL: no memory. */
 noc_environment *noc_environment_make(const noc_image *map, size_t *bad);

@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 
+#include <glob.h>
 #include <math.h>
 #include <nocturne/nocturne.h>
 
@@ -416,6 +417,63 @@ static void test_going_on(void **state) {
     noc_log_destroy(log);
 }
 
+/* Of all that an experiment shows. */
+static double sum_of_pictures(const char *name) {
+    char pattern[200];
+    double sum = 0;
+    glob_t found;
+    snprintf(pattern, sizeof(pattern), "%s/%s/pictures/*.exr", folder, name);
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        bool linear;
+        noc_image *image = noc_image_read(found.gl_pathv[i], NULL, &linear);
+        assert_non_null(image);
+        for (int k = 0; k < 3 * image->width * image->height; k++)
+            sum += image->rgb[k];
+        noc_image_destroy(image);
+    }
+    globfree(&found);
+    return sum;
+}
+
+/* A map around the scene, named as seen from the spec's folder: it lights the reference and what is measured. */
+static void test_map(void **state) {
+    (void)state;
+    char text[2000], path[200];
+    noc_log *log = fresh_log();
+    noc_lab_spec *spec;
+    noc_lab *lab;
+    double mean[2] = { 0 };
+    snprintf(text, sizeof(text), "%s", SPEC);
+    char *at = strstr(text, "\"inputs\"");
+    const char *rest = strstr(SPEC, "\"inputs\"");
+    snprintf(at, sizeof(text) - (size_t)(at - text), "\"environment\": \"map.exr\", %s", rest);
+    char *end = strstr(text, "\"size\"");
+    rest = strstr(SPEC, "\"size\"");
+    snprintf(end, sizeof(text) - (size_t)(end - text), "\"options\": { \"environment-light\": true }, %s", rest);
+    snprintf(path, sizeof(path), "%s/map.json", folder);
+    assert_int_equal(noc_lab_spec_parse(text, path, &spec, log), NOC_ERR_IO);
+    assert_non_null(strstr(last, "map.exr"));
+    for (int bright = 0; bright < 2; bright++) {
+        noc_image *map = noc_image_create(16, 8, NULL);
+        for (int i = 0; i < 3 * 16 * 8; i++)
+            map->rgb[i] = bright ? 50 : 1e-3f;
+        snprintf(path, sizeof(path), "%s/map.exr", folder);
+        assert_int_equal(noc_image_write(map, path, NULL, NULL, log), NOC_OK);
+        noc_image_destroy(map);
+        snprintf(path, sizeof(path), "%s/map.json", folder);
+        assert_int_equal(noc_lab_spec_parse(text, path, &spec, log), NOC_OK);
+        assert_int_equal(open_lab(spec, bright ? "bright" : "dim", noc_lab_default_params(), &lab, log), NOC_OK);
+        assert_int_equal(noc_lab_run(lab), NOC_OK);
+        mean[bright] = sum_of_pictures(bright ? "bright" : "dim");
+        noc_lab_destroy(lab);
+        noc_lab_spec_destroy(spec);
+    }
+    assert_int_equal(warnings, 0);
+    assert_true(mean[1] > 2 * mean[0]);
+    noc_log_destroy(log);
+}
+
 /* A host that writes decimals with a comma gets the same table, and reads it again. */
 static void test_locale(void **state) {
     (void)state;
@@ -444,6 +502,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_figures), cmocka_unit_test(test_measure_ends), cmocka_unit_test(test_spec),
         cmocka_unit_test(test_recipe),       cmocka_unit_test(test_going_on),     cmocka_unit_test(test_locale),
+        cmocka_unit_test(test_map),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -3,6 +3,7 @@
 
 #include "../core/no_profiles.h"
 #include "core/surface.h"
+#include "render/backend.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 
@@ -250,6 +251,37 @@ static void large_map(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Numbers so small that those beside them are no floats: the map is black, or finite. */
+static double denormal(int x, int y) {
+    (void)x;
+    (void)y;
+    return 1e-42;
+}
+static double dim(int x, int y) { return y < 8 ? 1e-20 : x % 3 ? 0 : 1e9; }
+static void tiny_light(void **state) {
+    (void)state;
+    noc_camera c, up = look(0, 0, 9, 0, 1, 9, 40);
+    for (int i = 0; i < 2; i++) {
+        noc_scene *s = surface(0, false, &grey, 9, &c);
+        set_map(s, make_map(16, i ? dim : denormal));
+        noc_render_params p = lit();
+        p.environment_lux = 1e6;
+        p.environment_scale = i ? 1e9 : 1;
+        frame_constants k = { 0 };
+        noc_make_frame_environment(s, &p, &k);
+        assert_true(isfinite(k.environment_scale) && isfinite(k.environment_inverse_power));
+        assert_true(isfinite(k.environment_level) && isfinite(1e9f * k.environment_scale));
+        assert_int_equal((k.flags & FRAME_MAP_LIGHTS) != 0, i);
+        for (int seen = 0; seen < 2; seen++) {
+            noc_image *image = render(s, seen ? &up : &c, &p, 2);
+            for (int n = 0; n < 3 * PIXELS; n++)
+                assert_true(isfinite(image->rgb[n]) && (i || image->rgb[n] < 1e-30f));
+            noc_image_destroy(image);
+        }
+        noc_scene_destroy(s);
+    }
+}
+
 /* The map's part of a scene: its name, its errors, and that another one begins the mean anew. */
 static void edits(void **state) {
     (void)state;
@@ -275,6 +307,11 @@ static void edits(void **state) {
     assert_string_not_equal(with, other);
     noc_image *odd = noc_image_create(10, 10, NULL);
     assert_int_equal(noc_scene_set_environment(s, odd), NOC_ERR_ARGUMENT);
+    const int sizes[][2] = { { INT32_MIN, 1 << 30 }, { -2, INT32_MAX }, { INT32_MIN, INT32_MIN }, { 3, 1 }, { 0, 0 } };
+    for (size_t i = 0; i < NOC_COUNT(sizes); i++) { /* none of them is looked into */
+        noc_image huge = { .width = sizes[i][0], .height = sizes[i][1], .rgb = odd->rgb };
+        assert_int_equal(noc_scene_set_environment(s, &huge), NOC_ERR_ARGUMENT);
+    }
     noc_image_destroy(odd);
     assert_int_equal(noc_scene_set_environment(s, NULL), NOC_OK);
     noc_scene_content(s, other);
@@ -299,6 +336,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(even_map),   cmocka_unit_test(one_texel), cmocka_unit_test(glossy_floors),
         cmocka_unit_test(background), cmocka_unit_test(large_map), cmocka_unit_test(edits),
+        cmocka_unit_test(tiny_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,9 +208,37 @@ static void test_ground(void **state) {
     noc_log_destroy(log);
 }
 
+/* A map that there is no memory for leaves the one before. */
+static void test_map(void **state) {
+    noc_log *log = counting_log();
+    noc_image *map = noc_image_create(4096, 2048, NULL), *before = noc_image_create(4, 2, NULL);
+    noc_scene_info info;
+    bool reached;
+    assert_non_null(map);
+    map->rgb[0] = 1;
+    FOR_EACH_REFUSAL(reached) {
+        noc_scene *s = noc_scene_create(log);
+        assert_int_equal(noc_scene_set_environment(s, before), NOC_OK);
+        begin_refusal(n, later);
+        noc_status status = noc_scene_set_environment(s, map);
+        reached = end_refusal();
+        if (reached)
+            assert_refused(status, "map");
+        else
+            assert_int_equal(status, NOC_OK);
+        noc_scene_get_info(s, &info);
+        assert_int_equal(info.environment_width, reached ? 4 : 4096);
+        noc_scene_destroy(s);
+    }
+    noc_image_destroy(map);
+    noc_image_destroy(before);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_by_hand), cmocka_unit_test(test_by_models),
                                         cmocka_unit_test(test_builtin), cmocka_unit_test(test_village),
-                                        cmocka_unit_test(test_cameras), cmocka_unit_test(test_ground) };
+                                        cmocka_unit_test(test_cameras), cmocka_unit_test(test_ground),
+                                        cmocka_unit_test(test_map) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -424,7 +424,7 @@ static noc_status set_environment(noc_scene *scene, const char *path) {
     if (!map)
         return noc_log_last_status(scene->log);
     noc_status status = linear
-                            ? noc_scene_set_environment(scene, map)
+                            ? noc_scene_name_environment(scene, map, path)
                             : noc_error(scene->log, NOC_ERR_FORMAT,
                                         "%s: a PNG holds no luminances: an environment is an EXR or HDR picture", path);
     noc_image_destroy(map);
