@@ -7,6 +7,18 @@ bool cli_is_built(const cli_args *args) {
     return args->input_count == 1 && !cli_builtin(args->inputs[0]) && noc_built_is(args->inputs[0]);
 }
 
+bool cli_has_map(const cli_args *args, const noc_import_params *import) {
+    noc_built_info info;
+    if (import->environment)
+        return true;
+    if (!cli_is_built(args) || noc_built_get_info(args->inputs[0], NULL, &info))
+        return false;
+    for (size_t i = 0; i < info.section_count; i++)
+        if (!strcmp(info.sections[i].name, "sky"))
+            return true;
+    return false;
+}
+
 /* What costs nothing to switch. */
 static bool of_windows(const noc_option *o) { return !strcmp(o->name, "window-lit") || !strcmp(o->name, "hour"); }
 static bool of_groups(const noc_option *o) { return !strcmp(o->name, "group"); }

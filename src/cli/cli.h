@@ -127,6 +127,8 @@ uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 
 /* built.c: the inputs are a built city (nocturne/built.h). */
 bool cli_is_built(const cli_args *args);
+/* Is there a map around the city: one that is named, or that of the built city? */
+bool cli_has_map(const cli_args *args, const noc_import_params *import);
 void cli_warn_of_built(const cli_args *args); /* of options that its build has decided */
 /* Its windows and cars, as the words say; nothing where they say nothing of them. */
 noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import);

@@ -135,16 +135,26 @@ static void use_preset(render_args *args) {
 /* What was given and changes nothing is no error, but hardly what was meant. */
 static void warn_of_idle(const render_args *args) {
     char why[160], value[8];
+    bool map = cli_has_map(&args->common, &args->import);
     for (size_t i = 0; i < args->common.given_count && !args->common.quiet; i++) {
         const noc_option *o = args->common.given[i];
         bool display = !strcmp(o->group, "Display");
-        if (!noc_option_idle(o, display ? noc_display_options() : noc_render_options(),
-                             display ? (const void *)&args->display : &args->render, why, sizeof(why)))
+        if (!map && !strncmp(o->name, "environment-", 12))
+            snprintf(why, sizeof(why), "there is no map around the city (--environment FILE)");
+        else if (!noc_option_idle(o, display ? noc_display_options() : noc_render_options(),
+                                  display ? (const void *)&args->display : &args->render, why, sizeof(why)))
             continue;
         bool off =
             o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
         cli_error("warning: --%s%s has no effect: %s", off ? "no-" : "", o->name, why);
     }
+}
+
+static int check_map(const render_args *args) {
+    bool may = !args->render.environment_light || cli_has_map(&args->common, &args->import);
+    return may ? CLI_OK
+               : cli_usage(&cli_render, "--environment-light needs a map around the city that lights it: "
+                                        "--environment FILE");
 }
 
 static int check_influence(const render_args *args) {
@@ -181,6 +191,7 @@ static int check(render_job *job) {
     if (!status && !args->animation.on)
         status = cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
     status = status ? status : check_influence(args);
+    status = status ? status : check_map(args);
     if (!status)
         warn_of_idle(args);
     if (!status)

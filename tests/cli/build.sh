@@ -56,6 +56,11 @@ run render city.noct --frames 1 -q -o meta.png
 python3 "$source_dir/tests/cli/png_text.py" meta.png >out
 grep -q '^built-from: city.gml$' out && grep -q '^window-lit: 0.9$' out
 result $? "metadata tell what it is built from, and how"
+expect "a built city without a map" 2 '--environment-light needs a map around the city' render city.noct -o x.png \
+    --environment-light
+run render city.yaml --size 32x16 --frames 1 -q -o map.exr
+run build city.yaml --environment map.exr -o sky.noct -q
+draw sky.exr sky.noct --environment-light
 expect "what is decided" 0 'warning: --lod has no effect: city.noct is built already' \
     render city.noct --lod 1 --frames 1 -o a.png
 run info city.noct

@@ -75,6 +75,9 @@ test $status = 0 && test "$(cat err)" = \
     "nocturne: warning: --shadow-rays has no effect: it needs method ris|restir, not is
 nocturne: warning: --no-temporal has no effect: it needs method restir, not is"
 result $? "options without effect are warned of"
+run render $small --environment-lux 3 --no-environment-light --frames 1 -o b.png
+test $status = 0 && test "$(grep -c 'has no effect: there is no map around the city (--environment FILE)' err)" = 2
+result $? "nor have options of a map that is not there"
 run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 \
     -o b.png
 test $status = 0 && test ! -s err
