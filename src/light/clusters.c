@@ -80,7 +80,20 @@ static uint32_t light_of(const build *b, size_t i) {
     return b->half == NOC_MOVING ? b->scene->moving.data[i] : (uint32_t)i;
 }
 
-static void bound_light(build *b, size_t i) { b->bounds[i] = noc_bound_light(&b->scene->lights.data[light_of(b, i)]); }
+/* What a light's score goes by. Of one with a profile that is not its peak: off the narrow beam of a headlamp it would
+ * be scored far too high, and take the places of what shines there. */
+static float strength_of(const noc_scene *scene, uint32_t light) {
+    const noc_light_record *l = &scene->lights.data[light];
+    uint32_t profile = (l->flags & LIGHT_PROFILE_BITS) >> LIGHT_PROFILE;
+    float peak = noc_light_intensity(l);
+    return profile && l->area > 0 ? peak * (scene->profiles.data[profile - 1].strength / l->area) : peak;
+}
+
+static void bound_light(build *b, size_t i) {
+    uint32_t light = light_of(b, i);
+    b->bounds[i] = noc_bound_light(&b->scene->lights.data[light]);
+    b->bounds[i].intensity = strength_of(b->scene, light);
+}
 
 /* By the way they face, then along the curve: groups of any level face alike. */
 static void make_key(build *b, size_t i) {
@@ -378,7 +391,7 @@ static void relight_cluster(build *b, size_t i) {
     noc_light_block *lights = &b->c->lights[i];
     float power = 0;
     for (int j = 0; j < NOC_CLUSTER_LIGHTS && (!j || lights->id[j] != lights->id[0]); j++) {
-        float intensity = noc_light_intensity(&b->scene->lights.data[lights->id[j]]);
+        float intensity = strength_of(b->scene, lights->id[j]);
         lights->shine[j] = half_intensity(intensity) | (lights->shine[j] & 0xffff);
         power += full_intensity(lights->shine[j]);
     }

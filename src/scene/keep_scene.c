@@ -110,7 +110,7 @@ noc_status noc_kept_groups(noct_file *f, noc_scene *s) {
 
 typedef struct kept_profile {
     uint32_t name;
-    float peak;
+    float peak, strength;
     uint32_t upward;
 } kept_profile;
 
@@ -118,7 +118,7 @@ void noc_keep_profiles(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "profiles");
     for (size_t i = 0; i < s->profiles.len; i++) {
         const noc_scene_profile *p = &s->profiles.data[i];
-        noct_put(w, &(kept_profile){ noct_name(w, p->name), p->peak, p->upward }, sizeof(kept_profile));
+        noct_put(w, &(kept_profile){ noct_name(w, p->name), p->peak, p->strength, p->upward }, sizeof(kept_profile));
     }
     noct_end(w);
     noct_put_array(w, "tables", s->profile_cells.data, s->profile_cells.len, sizeof(float));
@@ -153,9 +153,10 @@ noc_status noc_kept_profiles(noct_file *f, noc_scene *s) {
         return noct_no_memory(f);
     array_borrow(&s->profile_cells, table, 4 * cells);
     for (size_t i = 0; i < count; i++) {
-        noc_scene_profile p = { noct_name_at(f, k[i].name), k[i].peak, k[i].upward != 0 };
+        noc_scene_profile p = { noct_name_at(f, k[i].name), k[i].peak, k[i].strength, k[i].upward != 0 };
         s->profiles.data[s->profiles.len++] = p;
-        if (!p.name || !(p.peak >= 0 && p.peak <= 1e6f))
+        if (!p.name || !(p.peak >= 0 && p.peak <= 1e6f) ||
+            !(p.strength <= p.peak && (p.strength > 0 || p.peak == 0))) /* none is never drawn */
             return noct_wrong(f, "profile %zu is none", i + 1);
     }
     for (size_t i = 0; i < count; i++)

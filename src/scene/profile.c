@@ -27,6 +27,18 @@ static void put_table(noc_scene *scene, const photometry_table *t) {
     scene->profile_cells.len = first + (size_t)(t->rows - 1) * (size_t)t->columns * CELL;
 }
 
+/* Of noc_scene_profile. The squared cosine is 2 pi / 3 over a hemisphere. */
+static float strength_of(const photometry_table *t) {
+    double squares = 0, step = t->gamma_max / (t->rows - 1) * M_PI / 180;
+    for (int r = 0; r < t->rows; r++)
+        for (int c = 0; c < t->columns; c++) {
+            double value = (double)t->value.data[r * t->columns + c];
+            squares += value * value * sin(r * step) * (r % (t->rows - 1) ? 1 : .5);
+        }
+    squares *= step * 2 * M_PI / t->columns;
+    return fminf((float)sqrt(squares / (t->upward ? 4 * M_PI : 2 * M_PI / 3)), t->peak);
+}
+
 int noc_scene_add_profile(noc_scene *scene, const noc_profile *profile) {
     if (!scene || !profile) {
         noc_null(scene ? scene->log : NULL, __func__);
@@ -51,6 +63,7 @@ int noc_scene_add_profile(noc_scene *scene, const noc_profile *profile) {
         return -1;
     }
     made.peak = t.peak;
+    made.strength = strength_of(&t);
     made.upward = t.upward;
     size_t cells = (size_t)(t.rows - 1) * (size_t)t.columns;
     noc_scene_lock_commit(scene); /* frames read the array */

@@ -110,8 +110,10 @@ typedef struct noc_scene_group {
 /* What lights with that profile need to know of it. */
 typedef struct noc_scene_profile {
     const char *name;
-    float peak;  /* greatest intensity, cd a lumen */
-    bool upward; /* sends something beyond 90 degrees of its axis: such lights are two-sided, others never are */
+    float peak;     /* greatest intensity, cd a lumen */
+    float strength; /* peak of the light that falls off with the cosine, or of the even one where it shines upward, too,
+                     * whose intensity has the same mean square over all directions, cd a lumen */
+    bool upward;    /* sends something beyond 90 degrees of its axis: such lights are two-sided, others never are */
 } noc_scene_profile;
 
 /* Where a texture begins in texels, and a hash of what it holds. */

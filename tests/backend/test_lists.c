@@ -47,9 +47,9 @@ typedef struct world {
 } world;
 
 /* A tile that sees a patch of ground and a wall in it. */
-static void make_world(world *w, int lights, double side, int list, int tail) {
+static void make_world_of(world *w, noc_scene *scene, int list, int tail) {
     memset(w, 0, sizeof(*w));
-    w->scene = scene_of(lights, side);
+    w->scene = scene;
     w->clusters = noc_clusters_create(w->scene, NOC_STANDING, NULL, NULL);
     assert_non_null(w->clusters);
     w->params = measure(64, 48, NOC_METHOD_RIS);
@@ -76,6 +76,10 @@ static void make_world(world *w, int lights, double side, int list, int tail) {
             w->lanes[b] |= (uint32_t)(b % 3 != 2 || l % 4 != 1) << l;
         }
     }
+}
+
+static void make_world(world *w, int lights, double side, int list, int tail) {
+    make_world_of(w, scene_of(lights, side), list, tail);
 }
 
 static void free_world(world *w) {
@@ -230,6 +234,45 @@ static void few_lights_are_listed(void **state) {
     free_world(&w);
 }
 
+/* Headlamps all around, whose beams pass by, do not take the places of a tail lamp beside the tile, whose candela are a
+ * thousandth of their peak. */
+static void narrow_beams_leave_room(void **state) {
+    (void)state;
+    static world w;
+    noc_scene *scene = noc_scene_create(NULL);
+    noc_profile *beam = NULL;
+    assert_int_equal(noc_profile_builtin(NULL, "low-beam", &beam), NOC_OK);
+    int profile = noc_scene_add_profile(scene, beam);
+    noc_light tail = { .kind = NOC_LIGHT_DISC,
+                       .position = { -4, 0, .8 },
+                       .direction = { 1, 0, 0 },
+                       .radius = .06,
+                       .emission = { 3327, 0, 0 } };
+    for (int i = 0; i < 80; i++) {
+        double angle = 2 * M_PI * i / 80, ahead = angle + M_PI + (i % 2 ? 1.13 : -1.13); /* 65 degrees past the tile */
+        noc_light head = { .kind = NOC_LIGHT_DISC,
+                           .position = { 60 * cos(angle), 60 * sin(angle), .7 },
+                           .direction = { cos(ahead), sin(ahead), 0 },
+                           .c0 = { sin(ahead), -cos(ahead), 0 },
+                           .radius = .06,
+                           .emission = { 700, 700, 700 },
+                           .profile = profile };
+        assert_true(noc_scene_add_light(scene, &head) >= 0);
+    }
+    int beside = noc_scene_add_light(scene, &tail), times = 0;
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    make_world_of(&w, scene, 16, 32);
+    list_scratch *s = noc_alloc_large(1, sizeof(*s));
+    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.5f, s);
+    for (uint32_t j = 0; j < s->list.count; j++)
+        if (s->list.light[j] == (uint32_t)beside && s->list.weight[j] == 1)
+            times++;
+    assert_int_equal(times, 1);
+    free(s);
+    noc_profile_destroy(beam);
+    free_world(&w);
+}
+
 static void tables_agree(void **state) {
     (void)state;
     static world w;
@@ -277,9 +320,13 @@ static void far_lights_stand_alone(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_scene),   cmocka_unit_test(large_scene),
-        cmocka_unit_test(deep_scene),    cmocka_unit_test(far_lights_stand_alone),
-        cmocka_unit_test(tail_is_quiet), cmocka_unit_test(few_lights_are_listed),
+        cmocka_unit_test(small_scene),
+        cmocka_unit_test(large_scene),
+        cmocka_unit_test(deep_scene),
+        cmocka_unit_test(far_lights_stand_alone),
+        cmocka_unit_test(tail_is_quiet),
+        cmocka_unit_test(few_lights_are_listed),
+        cmocka_unit_test(narrow_beams_leave_room),
         cmocka_unit_test(tables_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

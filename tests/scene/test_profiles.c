@@ -52,6 +52,33 @@ static void test_light(void **state) {
     noc_scene_destroy(s);
 }
 
+/* What lists score lights by: of a light that falls off with the cosine, and of an even one, its peak; of a beam of 5
+ * degrees, whose cosine is 1, the root of its share of what the squared cosine has over a hemisphere, 2 pi / 3. */
+static void test_strength(void **state) {
+    enum { STEPS = 181 };
+    double c = 0, gamma[STEPS], cd[3][STEPS];
+    noc_scene *s = noc_scene_create(NULL);
+    for (int i = 0; i < STEPS; i++) {
+        gamma[i] = i;
+        cd[0][i] = i < 90 ? cos(i * M_PI / 180) : 0;
+        cd[1][i] = 1;
+        cd[2][i] = i <= 5;
+    }
+    const double beam = sqrt(2 * M_PI * (1 - cos(5.5 * M_PI / 180)) / (2 * M_PI / 3)), want[] = { 1, 1, beam };
+    for (int i = 0; i < 3; i++) {
+        noc_profile *p = NULL;
+        assert_int_equal(noc_profile_create(NULL, &(noc_profile_params){ "p", 1, STEPS, &c, gamma, cd[i], 90 }, &p),
+                         NOC_OK);
+        assert_int_equal(noc_scene_add_profile(s, p), i + 1);
+        const noc_scene_profile *made = &s->profiles.data[i];
+        double have = (double)made->strength / (double)made->peak;
+        if (fabs(have / want[i] - 1) > (i < 2 ? 1e-3 : .05)) /* its edge is a slope of a degree */
+            fail_msg("%d: %g, not %g", i, have, want[i]);
+        noc_profile_destroy(p);
+    }
+    noc_scene_destroy(s);
+}
+
 /* The street's C angle looks where it is asked to. */
 static void test_orient(void **state) {
     noc_profile *p = cosine();
@@ -164,8 +191,10 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_light),   cmocka_unit_test(test_orient),
-                                        cmocka_unit_test(test_refused), cmocka_unit_test(test_models_and_edits),
-                                        cmocka_unit_test(test_content), cmocka_unit_test(test_memory) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_light),   cmocka_unit_test(test_strength),         cmocka_unit_test(test_orient),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_models_and_edits), cmocka_unit_test(test_content),
+        cmocka_unit_test(test_memory)
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,10 +45,10 @@ static const built_part parts[] = {
 
 /* All that must be the same where a file is written and where it is read. */
 uint64_t built_layout(void) {
-    const uint64_t numbers[] = { sizeof(noc_light_record), sizeof(noc_scene_group), NOC_CLASS_COUNT,
-                                 NOC_LIGHT_KIND_COUNT,     NOC_WINDOW_KIND_COUNT,   NOC_WALL_VERDICT_COUNT,
-                                 LIGHT_PROFILE_BITS,       sizeof(noc_scene_stop),  sizeof(noc_scene_car),
-                                 NOC_COUNT(parts),         built_report_layout() };
+    const uint64_t numbers[] = { sizeof(noc_light_record),  sizeof(noc_scene_group), NOC_CLASS_COUNT,
+                                 NOC_LIGHT_KIND_COUNT,      NOC_WINDOW_KIND_COUNT,   NOC_WALL_VERDICT_COUNT,
+                                 LIGHT_PROFILE_BITS,        sizeof(noc_scene_stop),  sizeof(noc_scene_car),
+                                 sizeof(noc_scene_profile), NOC_COUNT(parts),        built_report_layout() };
     return noct_sum(numbers, sizeof(numbers));
 }
 
