@@ -158,7 +158,8 @@ static int check(build_args *args) {
         if (needed)
             return cli_usage(&cli_build, "--%s is for the input %s", o->name, needed);
     }
-    return cli_check_output(&cli_build, args->output, CLI_NOCT, &args->common);
+    int status = cli_check_built(&cli_build, &args->common, &args->import);
+    return status ? status : cli_check_output(&cli_build, args->output, CLI_NOCT, &args->common);
 }
 
 static void print_summary(const build_args *args, const noc_scene *scene, const noc_report *report, double seconds) {

@@ -18,7 +18,8 @@ typedef struct cli_args {
     bool help, quiet, verbose;
     const noc_option *given[CLI_GIVEN]; /* options that were set, in order: by the words, then by the recipe */
     size_t given_count, given_by_words; /* those of the words are the first ones */
-    noc_recipe *recipe;                 /* among the inputs; NULL: none */
+    size_t said_anew;   /* so many of the first are said beside a built city, whose own recipe says the others */
+    noc_recipe *recipe; /* among the inputs; NULL: none */
 } cli_args;
 
 /* An option table and where its params struct lies in the command's arguments. */
@@ -129,7 +130,8 @@ uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 bool cli_is_built(const cli_args *args);
 /* Is there a map around the city: one that is named, or that of the built city? */
 bool cli_has_map(const cli_args *args, const noc_import_params *import);
-void cli_warn_of_built(const cli_args *args); /* of options that its build has decided */
+/* Refuses what its build has decided otherwise, of options and of a recipe around it: CLI_OK or CLI_USAGE. */
+int cli_check_built(const cli_command *command, const cli_args *args, const noc_import_params *import);
 /* Its windows and cars, as the words say; nothing where they say nothing of them. */
 noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import);
 

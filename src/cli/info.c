@@ -399,6 +399,9 @@ static int run(void *arguments) {
     noc_recipe_lists(args->common.recipe, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");
+    int built = cli_check_built(&cli_info, &args->common, &args->import);
+    if (built)
+        return built;
     cli_catch_signals();
     cli_nothing_to_keep(true);
     cli_progress_start(args->common.quiet);

@@ -69,8 +69,11 @@ int cli_use_recipe(const cli_command *command, void *arguments) {
     noc_log_destroy(log);
     if (status)
         return CLI_FAILURE;
+    bool built = noc_built_is(args->inputs[index]);
     replace_input(args, index, noc_recipe_get_info(args->recipe));
-    return take_options(command, args);
+    int taken = take_options(command, args);
+    args->said_anew = built ? args->given_by_words : args->given_count;
+    return taken;
 }
 
 const noc_recipe_camera *cli_recipe_camera(const cli_args *args, const char *name) {

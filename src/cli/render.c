@@ -194,9 +194,7 @@ static int check(render_job *job) {
     status = status ? status : check_map(args);
     if (!status)
         warn_of_idle(args);
-    if (!status)
-        cli_warn_of_built(&args->common);
-    return status;
+    return status ? status : cli_check_built(&cli_render, &args->common, &args->import);
 }
 
 static noc_status load(render_job *job) {

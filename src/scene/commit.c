@@ -378,8 +378,11 @@ static void apply_edit(commit *c, noc_edit *e) {
         return; /* removed by an edit before this one */
     noc_light_record r = light ? noc_light_made(s, e->index) : e->light;
     switch (e->kind) {
-    case NOC_EDIT_MATERIAL:
     case NOC_EDIT_CLASS:
+        s->class_looks[e->index] = e->material;
+        s->class_said |= 1u << e->index;
+        break;
+    case NOC_EDIT_MATERIAL:
     case NOC_EDIT_GROUP:
     case NOC_EDIT_GROUP_COLOUR: break; /* done before */
     case NOC_EDIT_EMISSION:

@@ -44,9 +44,12 @@ noc_status noc_kept_traffic(noct_file *f, noc_scene *s);
 void noc_keep_textures(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_textures(noct_file *f, noc_scene *s);
 
-/* keep_surfaces.c: materials, then meshes with their triangles, which show lights and are made of materials. */
+/* keep_surfaces.c: materials, of surfaces and of classes, then meshes with their triangles, which show lights and are
+ * made of materials. */
 void noc_keep_materials(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_materials(noct_file *f, noc_scene *s);
+void noc_keep_classes(noct_writer *w, const noc_scene *s); /* what was said of them */
+noc_status noc_kept_classes(noct_file *f, noc_scene *s);
 void noc_keep_meshes(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_meshes(noct_file *f, noc_scene *s);
 

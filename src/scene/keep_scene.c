@@ -26,6 +26,7 @@ void noc_keep_scene(noct_writer *w, const noc_scene *s) {
     noct_put_u32(w, s->backdrop_count);
     noct_put_u32(w, s->lit_elsewhere);
     noct_put_u32(w, s->scaled);
+    noct_put_u32(w, s->wet);
     noct_put_text(w, s->crs_name);
     noct_put_text(w, s->given_crs_name);
     noct_put_text(w, s->without_crs);
@@ -67,6 +68,7 @@ noc_status noc_kept_scene(noct_file *f, noc_scene *s) {
     s->backdrop_count = noct_get_u32(&c);
     s->lit_elsewhere = noct_get_u32(&c) != 0;
     s->scaled = noct_get_u32(&c) != 0;
+    s->wet = noct_get_u32(&c) != 0;
     if (!get_text(f, &c, &s->crs_name) || !get_text(f, &c, &s->given_crs_name) || !get_text(f, &c, &s->without_crs) ||
         !noct_read_whole(f, &c, "scene"))
         return f->status;

@@ -6,18 +6,31 @@ typedef struct kept_material {
     uint32_t two_sided, cls, of_lights, texture;
 } kept_material;
 
+static kept_material keep(const noc_material *m) {
+    kept_material k = { .f0 = m->f0,
+                        .roughness = m->roughness,
+                        .two_sided = m->two_sided,
+                        .cls = m->cls,
+                        .texture = (uint32_t)m->texture };
+    memcpy(k.albedo, m->albedo, sizeof(k.albedo));
+    memcpy(k.emission, m->emission, sizeof(k.emission));
+    return k;
+}
+
+static noc_material kept(const kept_material *k) {
+    noc_material m = { .f0 = k->f0, .roughness = k->roughness, .two_sided = k->two_sided != 0 };
+    m.cls = (noc_class)NOC_MIN(k->cls, (uint32_t)NOC_CLASS_COUNT);
+    m.texture = (int)NOC_MIN(k->texture, (uint32_t)INT32_MAX);
+    memcpy(m.albedo, k->albedo, sizeof(m.albedo));
+    memcpy(m.emission, k->emission, sizeof(m.emission));
+    return m;
+}
+
 void noc_keep_materials(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "material");
     for (size_t i = 0; i < s->materials.len; i++) {
-        const noc_material *m = &s->materials.data[i];
-        kept_material k = { .f0 = m->f0,
-                            .roughness = m->roughness,
-                            .two_sided = m->two_sided,
-                            .cls = m->cls,
-                            .texture = (uint32_t)m->texture,
-                            .of_lights = s->material_uses.data[i] != NOC_NOT_OF_LIGHTS };
-        memcpy(k.albedo, m->albedo, sizeof(k.albedo));
-        memcpy(k.emission, m->emission, sizeof(k.emission));
+        kept_material k = keep(&s->materials.data[i]);
+        k.of_lights = s->material_uses.data[i] != NOC_NOT_OF_LIGHTS;
         noct_put(w, &k, sizeof(k));
     }
     noct_end(w);
@@ -32,11 +45,7 @@ noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
         !array_reserve(&s->material_uses, count))
         return noct_no_memory(f);
     for (size_t i = 0; i < count; i++) {
-        noc_material m = { .f0 = k[i].f0, .roughness = k[i].roughness, .two_sided = k[i].two_sided != 0 };
-        m.cls = (noc_class)NOC_MIN(k[i].cls, (uint32_t)NOC_CLASS_COUNT);
-        m.texture = (int)NOC_MIN(k[i].texture, (uint32_t)INT32_MAX);
-        memcpy(m.albedo, k[i].albedo, sizeof(m.albedo));
-        memcpy(m.emission, k[i].emission, sizeof(m.emission));
+        noc_material m = kept(&k[i]);
         if (noc_material_fault(s, &m))
             return noct_wrong(f, "material %zu: %s", i, noc_material_fault(s, &m));
         s->materials.data[s->materials.len++] = m;
@@ -44,6 +53,39 @@ noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
         s->material_uses.data[s->material_uses.len++] = k[i].of_lights ? 0 : NOC_NOT_OF_LIGHTS;
     }
     return NOC_OK;
+}
+
+/* ---- what was said of classes ---- */
+
+typedef struct kept_class {
+    uint32_t said;
+    kept_material look;
+} kept_class;
+
+void noc_keep_classes(noct_writer *w, const noc_scene *s) {
+    noct_begin(w, "classes");
+    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
+        kept_class k = { s->class_said >> c & 1, keep(&s->class_looks[c]) };
+        noct_put(w, &k, sizeof(k));
+    }
+    noct_end(w);
+}
+
+noc_status noc_kept_classes(noct_file *f, noc_scene *s) {
+    size_t count;
+    const kept_class *k = noct_array(f, "classes", sizeof(*k), &count);
+    if (!f->status && count != NOC_CLASS_COUNT)
+        return noct_wrong(f, "it has %zu classes", count);
+    for (size_t c = 0; c < count; c++) {
+        noc_material m = kept(&k[c].look);
+        if (!k[c].said)
+            continue;
+        if (noc_material_fault(s, &m))
+            return noct_wrong(f, "class %s: %s", noc_class_name((noc_class)c), noc_material_fault(s, &m));
+        s->class_looks[c] = m;
+        s->class_said |= 1u << c;
+    }
+    return f->status;
 }
 
 /* ---- meshes ---- */

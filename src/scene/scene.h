@@ -255,6 +255,9 @@ struct noc_scene {
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
     noc_camera own_camera;                   /* fov_deg 0: none */
     bool scaled;                             /* a group's scale has been another than 1 */
+    bool wet;                                /* its load has made roads and ground wet */
+    uint32_t class_said;                     /* bits of classes that were set as a whole: */
+    noc_material class_looks[NOC_CLASS_COUNT];
     bool committed;
     noc_scene_versions versions;
     noc_range dirty_lights, dirty_materials; /* records that the last commit that changed anything wrote or added */

@@ -26,6 +26,17 @@ same() { # "what" A B: all pixels are equal
     grep -Eq 'all pixels +1,536 +0.000 +0 ' out
     result $? "$1"
 }
+pixels() { # of a PNG, with nothing beside them
+    python3 -c 'import sys
+d = open(sys.argv[1], "rb").read()
+at, out = 8, b""
+while at < len(d):
+    n = int.from_bytes(d[at:at + 4], "big")
+    out += d[at + 8:at + 8 + n] if d[at + 4:at + 8] in (b"IHDR", b"IDAT") else b""
+    at += n + 12
+assert len(out) > 100
+sys.stdout.buffer.write(out)' "$1"
+}
 draw() {
     out=$1
     shift
@@ -45,6 +56,58 @@ same "with the recipe's cameras" files.exr built.exr
 draw files.exr city.yaml --window-lit 0.2 --hour 23
 draw built.exr city.noct --window-lit 0.2 --hour 23
 same "its windows are switched" files.exr built.exr
+# What may be said of a built city does what it does to its inputs, and what may not is refused.
+cat >rain.yaml <<'END2'
+nocturne: 1
+inputs: [city.gml]
+materials: { terrain: { albedo: 0.6 }, wall: { albedo: 0.7, f0: 0.1, roughness: 0.3 } }
+groups: { warm: { match: { class: window }, kelvin: 2200, scale: 0.5 } }
+windows: { lit: 0.8 }
+width: 48
+height: 32
+END2
+run build rain.yaml -q -o rain.noct
+draw plain.exr rain.noct
+set -- '--wet' '--group warm=off' '--group warm=0.2,5000K' '--group warm=own' '--window-lit 1' '--window-lit 0' \
+    '--hour 3' '--window-lit 0.5 --hour 19.5' '--wet --hour 23' '--sky 0.4' '--sky 0' '--seed 9' '--no-emitters' \
+    '--environment sky.hdr --environment-light' '--environment sky.hdr --environment-lux 5 --environment-rotation 90' \
+    '--exposure 3' '--view aerial' '--fov 30' '--method restir' '--show class' '--show group'
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\100\040\200\040\100\200\201' >sky.hdr
+for options in "$@"; do
+    # shellcheck disable=SC2086
+    run render rain.yaml $options -q --frames 2 -o files.png &&
+        run render rain.noct $options -q --frames 2 -o built.png
+    test "$status" = 0 && pixels files.png >files.sum && pixels built.png | cmp -s - files.sum
+    result $? "a built city with $options"
+done
+run render rain.noct --wet -q --frames 2 -o wet.exr
+run compare wet.exr plain.exr
+grep -Eq 'all pixels +1,536 +0.000' out && false || true
+result $? "--wet is seen"
+run build rain.noct --wet -q -o wet.noct
+run render wet.noct --wet -q --frames 2 -o again.exr
+same "rain on a built city is built again, and does not fall twice" wet.exr again.exr
+expect "and does not dry" 2 'wet: wet.noct is built already, .*: build it again with this' \
+    render wet.noct --no-wet -o a.png
+for options in '--window-seed 3' '--no-windows' '--lod 1' '--lamp-lumens 9' '--infer-lamps' '--bbox 0,0,1,1' \
+    '--storey-height 4' '--traffic' '--crs EPSG:25832' '--no-textures'; do
+    # shellcheck disable=SC2086
+    expect "no $options on a built city" 2 'rain.noct is built already, and that has decided it' \
+        render rain.noct $options -o a.png
+done
+expect "nor where it is built again" 2 'lod: rain.noct is built already' build rain.noct --lod 1 -o a.noct
+expect "or told of" 2 'lod: rain.noct is built already' info rain.noct --lod 1
+expect "nor lamps beside it" 1 'rain.noct: is a built city, which is an input alone' \
+    render rain.noct --lamps city.gml -o a.png
+run render rain.noct --window-seed 1 --window-lit 0.8 --frames 1 -q -o a.png
+test "$status" = 0 && test ! -s err
+result $? "what is said as it was built"
+printf 'nocturne: 1\ninputs: [rain.noct]\nwet: on\nwindows: { lit: 0.3 }\nwidth: 48\nheight: 32\n' >over.yaml
+run render rain.yaml --wet --window-lit 0.3 -q --frames 2 -o files.exr
+run render over.yaml -q --frames 2 -o built.exr
+same "a recipe of a built city switches it, too" files.exr built.exr
+printf 'nocturne: 1\ninputs: [rain.noct]\ngroups: { a: { on: off } }\n' >over.yaml
+expect "its rules come too late" 2 'groups of a recipe: .*rain.noct is built already' render over.yaml -o a.png
 run render city.noct --animate --path flight --frames 2 --samples 1 -q -o 'f-%d.png'
 result "$status" "with the recipe's paths"
 run build city.noct --window-lit 0.2 -o again.noct -q
@@ -61,8 +124,6 @@ expect "a built city without a map" 2 '--environment-light needs a map around th
 run render city.yaml --size 32x16 --frames 1 -q -o map.exr
 run build city.yaml --environment map.exr -o sky.noct -q
 draw sky.exr sky.noct --environment-light
-expect "what is decided" 0 'warning: --lod has no effect: city.noct is built already' \
-    render city.noct --lod 1 --frames 1 -o a.png
 run info city.noct
 grep -q 'built city, version 1' out && grep -q '^city.gml$' out && grep -q 'house\|two-points' out
 result $? "info tells what it is built from"

@@ -392,45 +392,6 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
     return NOC_OK;
 }
 
-/* Of classes, once all is there that is of them. */
-static noc_status set_materials(noc_scene *scene, const noc_import_params *params) {
-    static const noc_class wet[] = { NOC_CLASS_ROAD, NOC_CLASS_SIDEWALK, NOC_CLASS_TERRAIN, NOC_CLASS_GROUND };
-    noc_material of[NOC_CLASS_COUNT];
-    bool set[NOC_CLASS_COUNT] = { false };
-    noc_status status = NOC_OK;
-    for (int c = 0; c < NOC_CLASS_COUNT; c++)
-        of[c] = noc_class_material((noc_class)c);
-    for (size_t i = 0; i < params->material_count; i++) {
-        noc_class cls = params->materials[i].cls;
-        if ((unsigned)cls >= NOC_CLASS_COUNT)
-            return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: materials[%zu] is of class %d", i, (int)cls);
-        of[cls] = params->materials[i];
-        set[cls] = true;
-    }
-    for (size_t i = 0; i < NOC_COUNT(wet) && params->wet; i++) {
-        of[wet[i]] = noc_material_wet(&of[wet[i]]);
-        set[wet[i]] = true;
-    }
-    for (int c = 0; c < NOC_CLASS_COUNT && !status; c++)
-        if (set[c])
-            status = noc_scene_set_class_material(scene, (noc_class)c, &of[c]);
-    return status;
-}
-
-/* The map around the scene, by its file. */
-static noc_status set_environment(noc_scene *scene, const char *path) {
-    bool linear;
-    noc_image *map = noc_image_read(path, scene->log, &linear);
-    if (!map)
-        return noc_log_last_status(scene->log);
-    noc_status status = linear
-                            ? noc_scene_name_environment(scene, map, path)
-                            : noc_error(scene->log, NOC_ERR_FORMAT,
-                                        "%s: a PNG holds no luminances: an environment is an EXR or HDR picture", path);
-    noc_image_destroy(map);
-    return status;
-}
-
 /* The first of the inputs that is a built city, but for those that a folder holds; NULL where there is none. */
 static const char *find_built(const importer *im) {
     for (size_t i = 0; i < im->input_count; i++)
@@ -491,7 +452,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         return status;
     }
     if (params->environment && !inspect)
-        status = set_environment(scene, params->environment);
+        status = finish_environment(scene, params->environment);
     if (status) {
         box_free(&im.box);
         return status;
@@ -511,8 +472,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
     if (!status && !inspect && !built)
         status = look_read_images(&im);
-    if (!status && !inspect && !built)
-        status = set_materials(scene, params);
+    if (!status && !inspect)
+        status = finish_materials(scene, params);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (!status && !inspect)

@@ -473,6 +473,11 @@ void heights_lay(importer *im, struct city_ground *ground, double *points, size_
 /* lamps.c: ground where there is none, then lamps. */
 noc_status finish_city(importer *im);
 
+/* finish.c */
+noc_status finish_environment(noc_scene *scene, const char *path); /* the map around the scene, by its file */
+/* Of classes, once all is there that is of them, or a built city. */
+noc_status finish_materials(noc_scene *scene, const noc_import_params *params);
+
 /* at_once.c: reads the inputs, by their indices, on the threads of the pool but the caller's. There must be others. */
 noc_status read_at_once(importer *im, const size_t *inputs, size_t count, noc_pool *pool);
 /* Of a reading before its turn. NOC_ERR_MEMORY is told later. */
