@@ -19,8 +19,9 @@ extern "C" {
 /* What something must be. Texts are the caller's.
  *
  * key: what the readers understood of a lamp, whatever its file calls it (height, watts, lumens, kelvin, source, mount,
- * heads, id); file, street, class (lamp, window, other) or inferred (yes, no); else the name of a tag, a column or an
- * attribute, where case, accents, blanks and signs do not count. "tag:NAME" is always that.
+ * heads, id); file, street, road (the value of highway that the nearest road has), class (lamp, window, other) or
+ * inferred (yes, no); else the name of a tag, a column or an attribute, where case, accents, blanks and signs do not
+ * count. "tag:NAME" is always that.
  *
  * test: a pattern of the whole value, where case does not count: "*" any text, "?" a character, "[a-f]" one of these,
  * "|" between patterns; "!" before them: none of them. "absent": no value, or a blank one; so "*" is any value. "< 70",

@@ -80,8 +80,10 @@ noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, co
 typedef struct city_roads city_roads;
 city_roads *city_roads_create(const geo_road *roads, size_t count);
 void city_roads_destroy(city_roads *roads); /* NULL is allowed */
-/* Unit vector from a point to the middle of the nearest road that a lamp there lights; false where none is near. */
-bool city_roads_facing(const city_roads *roads, const double xy[2], double facing[2]);
+/* The nearest road that a lamp there lights, named or not, whose middle is within 25 m: a path counts as 3 m farther
+ * away, for lamps of a street stand beside its pavement. NULL: there is none. facing: the unit vector from there to its
+ * middle; may be NULL. */
+const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], double facing[2]);
 
 /* The nearest road with a name, whose middle is within 25 m; NULL: there is none. */
 const geo_road *city_roads_street(const city_roads *roads, const double xy[2]);

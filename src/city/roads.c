@@ -96,19 +96,23 @@ const geo_road *city_roads_street(const city_roads *roads, const double xy[2]) {
     return found;
 }
 
-bool city_roads_facing(const city_roads *roads, const double xy[2], double facing[2]) {
+/* facing NULL: that is not asked, and the place may be the middle of the road. */
+const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], double facing[2]) {
+    const geo_road *found = NULL;
     double best = INFINITY, to[2] = { 0 };
     for (road_walk w = road_walk_start(roads, xy); road_walk_next(&w);) {
         const geo_road *road = &roads->roads[w.piece->road];
         double nearest[2], d = road_distance(w.piece, xy, nearest);
         double off = d - geo_road_width(road) / 2 + (road->cls == GEO_ROAD_PATH ? PATH_AWAY : 0);
-        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > BESIDE || d < .1 || off >= best)
+        bool nearer = off < best || (off == best && found && strcmp(road->id, found->id) < 0);
+        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > BESIDE || (facing && d < .1) || !nearer)
             continue;
         best = off;
-        for (int k = 0; k < 2; k++)
+        found = road;
+        for (int k = 0; k < 2 && facing; k++)
             to[k] = (nearest[k] - xy[k]) / d;
     }
-    if (isfinite(best))
+    if (found && facing)
         memcpy(facing, to, sizeof(to));
-    return isfinite(best);
+    return found;
 }

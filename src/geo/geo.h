@@ -154,8 +154,7 @@ typedef struct geo_footprint {
     noc_building_use use;
 } geo_footprint;
 
-/* What a line of a map is to those who drive and walk there. The value of highway; links are of the class that they
- * lead to. */
+/* What a line of a map is to those who drive and walk there. Links are of the class that they lead to. */
 typedef enum geo_road_class {
     GEO_ROAD_MOTORWAY,
     GEO_ROAD_TRUNK,
@@ -172,6 +171,16 @@ typedef enum geo_road_class {
     GEO_ROAD_CLASSES
 } geo_road_class;
 
+/* A value of OpenStreetMap's highway that is a road. */
+typedef struct geo_highway {
+    const char *word;
+    geo_road_class cls;
+    bool motor, link;
+} geo_highway;
+/* By its number, from 1 on; NULL beyond the last, and for 0. */
+const geo_highway *geo_highway_get(int number);
+int geo_highway_find(const char *word); /* 0: there is none */
+
 #define GEO_ROAD_MOST_LANES 32
 #define GEO_ROAD_MOST_LAYER 100
 
@@ -180,6 +189,7 @@ typedef enum geo_road_class {
 typedef struct geo_road {
     const char *id, *name; /* "way/12"; neither is NULL */
     geo_road_class cls;
+    int highway; /* its word: geo_highway_get */
     bool link, roundabout, bridge;
     bool tunnel; /* or covered */
     bool motor;  /* cars may drive on it, by its class and its access */

@@ -2,6 +2,45 @@
 
 #include <math.h>
 
+/* wiki.openstreetmap.org, Key:highway */
+static const geo_highway highways[] = {
+    { "motorway", GEO_ROAD_MOTORWAY, true, false },
+    { "motorway_link", GEO_ROAD_MOTORWAY, true, true },
+    { "trunk", GEO_ROAD_TRUNK, true, false },
+    { "trunk_link", GEO_ROAD_TRUNK, true, true },
+    { "primary", GEO_ROAD_PRIMARY, true, false },
+    { "primary_link", GEO_ROAD_PRIMARY, true, true },
+    { "secondary", GEO_ROAD_SECONDARY, true, false },
+    { "secondary_link", GEO_ROAD_SECONDARY, true, true },
+    { "tertiary", GEO_ROAD_TERTIARY, true, false },
+    { "tertiary_link", GEO_ROAD_TERTIARY, true, true },
+    { "residential", GEO_ROAD_MINOR, true, false },
+    { "unclassified", GEO_ROAD_MINOR, true, false },
+    { "road", GEO_ROAD_MINOR, true, false },
+    { "living_street", GEO_ROAD_LIVING, true, false },
+    { "service", GEO_ROAD_SERVICE, true, false },
+    { "busway", GEO_ROAD_SERVICE, false, false },
+    { "bus_guideway", GEO_ROAD_SERVICE, false, false },
+    { "pedestrian", GEO_ROAD_PEDESTRIAN, false, false },
+    { "footway", GEO_ROAD_PATH, false, false },
+    { "cycleway", GEO_ROAD_PATH, false, false },
+    { "path", GEO_ROAD_PATH, false, false },
+    { "steps", GEO_ROAD_PATH, false, false },
+    { "bridleway", GEO_ROAD_PATH, false, false },
+    { "track", GEO_ROAD_TRACK, false, false },
+};
+
+const geo_highway *geo_highway_get(int number) {
+    return number > 0 && (size_t)number <= NOC_COUNT(highways) ? &highways[number - 1] : NULL;
+}
+
+int geo_highway_find(const char *word) {
+    for (size_t i = 0; i < NOC_COUNT(highways); i++)
+        if (!strcmp(highways[i].word, word))
+            return (int)i + 1;
+    return 0;
+}
+
 /* Ours. Lanes are as wide as RASt 06 (FGSV, 2006) makes them in towns, 2.75 to 3.25 m, and on motorways 3.5 to 3.75 m;
  * carriageways of two ways and unmarked ones of its residential streets are some 5.5 m wide. */
 static const struct {

@@ -348,10 +348,10 @@ static void facing(void **state) {
     add(&t, GEO_ROAD_RAIL, -100, 4.6, 100, 4.6);
     city_roads *roads = city_roads_create(t.roads, t.count);
     double to[2] = { 0 };
-    assert_true(city_roads_facing(roads, (double[]){ 50, 4 }, to) && fabs(to[1] + 1) < 1e-9);
-    assert_true(city_roads_facing(roads, (double[]){ 50, 9 }, to) && fabs(to[1] + 1) < 1e-9);
-    assert_true(city_roads_facing(roads, (double[]){ 104, -3 }, to) && fabs(to[0] + .8) < 1e-9);
-    assert_false(city_roads_facing(roads, (double[]){ 0, 40 }, to));
+    assert_true(city_roads_beside(roads, (double[]){ 50, 4 }, to) && fabs(to[1] + 1) < 1e-9);
+    assert_true(city_roads_beside(roads, (double[]){ 50, 9 }, to) && fabs(to[1] + 1) < 1e-9);
+    assert_true(city_roads_beside(roads, (double[]){ 104, -3 }, to) && fabs(to[0] + .8) < 1e-9);
+    assert_null(city_roads_beside(roads, (double[]){ 0, 40 }, to));
     city_roads_destroy(roads);
     end(&t);
 }

@@ -194,6 +194,7 @@ static const char *read_test(const char *text, test *t) {
 typedef enum subject {
     OF_TAG,
     OF_STREET, /* by tags, else by where it stands */
+    OF_ROAD,   /* by where it stands alone */
     OF_FILE,
     OF_CLASS,
     OF_INFERRED,
@@ -212,10 +213,11 @@ static const struct {
     subject of;
     lamp_unit unit;
 } subjects[] = {
-    { "street", OF_STREET, LAMP_PLAIN },     { "file", OF_FILE, LAMP_PLAIN },      { "class", OF_CLASS, LAMP_PLAIN },
-    { "inferred", OF_INFERRED, LAMP_PLAIN }, { "id", OF_ID, LAMP_PLAIN },          { "source", OF_SOURCE, LAMP_PLAIN },
-    { "mount", OF_MOUNT, LAMP_PLAIN },       { "height", OF_HEIGHT, LAMP_METRES }, { "watts", OF_WATTS, LAMP_WATTS },
-    { "lumens", OF_LUMENS, LAMP_LUMENS },    { "kelvin", OF_KELVIN, LAMP_KELVIN }, { "heads", OF_HEADS, LAMP_PLAIN },
+    { "street", OF_STREET, LAMP_PLAIN }, { "road", OF_ROAD, LAMP_PLAIN },         { "file", OF_FILE, LAMP_PLAIN },
+    { "class", OF_CLASS, LAMP_PLAIN },   { "inferred", OF_INFERRED, LAMP_PLAIN }, { "id", OF_ID, LAMP_PLAIN },
+    { "source", OF_SOURCE, LAMP_PLAIN }, { "mount", OF_MOUNT, LAMP_PLAIN },       { "height", OF_HEIGHT, LAMP_METRES },
+    { "watts", OF_WATTS, LAMP_WATTS },   { "lumens", OF_LUMENS, LAMP_LUMENS },    { "kelvin", OF_KELVIN, LAMP_KELVIN },
+    { "heads", OF_HEADS, LAMP_PLAIN },
 };
 
 /* Tags and columns that name the street, folded: OSM's, and those of inventories in the languages of columns.c. */
@@ -266,7 +268,8 @@ struct lamp_conditions {
     NOC_ARRAY(size_t) ends; /* of each rule's, then of each group's, in `all` */
     size_t rules;
     unsigned bits;
-    bool street;
+    bool street; /* any of them asks for it */
+    bool roads;  /* or for roads beside a lamp */
 };
 
 static const char *read_condition(const noc_condition *from, condition *to) {
@@ -316,6 +319,7 @@ static noc_status add(lamp_conditions *c, const noc_condition *from, size_t coun
                              GEO_CONDITIONS);
         made.bit = bit ? c->bits++ : 0;
         c->street = c->street || made.of == OF_STREET;
+        c->roads = c->roads || made.of == OF_STREET || made.of == OF_ROAD;
         if (!array_push(&c->all, made))
             return noc_no_memory(log, place);
     }
@@ -356,7 +360,7 @@ void lamp_conditions_destroy(lamp_conditions *c) {
     free(c);
 }
 
-bool lamp_conditions_ask_street(const lamp_conditions *c) { return c && c->street; }
+bool lamp_conditions_ask_roads(const lamp_conditions *c) { return c && c->roads; }
 
 /* ---- of tags ---- */
 
@@ -433,6 +437,7 @@ static bool lamp_holds(const condition *k, const lamp_subject *of) {
         if (!lamp->tells_street)
             return text_holds(k, of->street);
         return bit_of(lamp->holds, k->bit);
+    case OF_ROAD: return text_holds(k, of->road);
     case OF_TAG: return bit_of(lamp->holds, k->bit);
     case OF_ID: return text_holds(k, lamp->id);
     case OF_SOURCE: return text_holds(k, source_text(lamp));
@@ -460,6 +465,18 @@ static bool all_hold(const lamp_conditions *c, size_t index, const lamp_subject 
     for (size_t i = index ? c->ends.data[index - 1] : 0; i < c->ends.data[index] && hold; i++)
         hold = holds(&c->all.data[i], of);
     return hold;
+}
+
+size_t lamp_rule_means_road(const lamp_conditions *c, size_t rule, const char *highway, bool tag) {
+    size_t first = rule ? c->ends.data[rule - 1] : 0;
+    for (size_t i = first; i < c->ends.data[rule]; i++) {
+        const condition *k = &c->all.data[i];
+        bool asks = tag ? k->of == OF_TAG && (lamp_same_key(k->tag, "highway") || lamp_same_key(k->tag, "fclass"))
+                        : k->of == OF_ROAD;
+        if (asks && text_holds(k, highway))
+            return i - first + 1;
+    }
+    return 0;
 }
 
 bool lamp_rule_holds(const lamp_conditions *c, size_t rule, const lamp_subject *of) { return all_hold(c, rule, of); }

@@ -14,8 +14,8 @@ typedef struct lamp_conditions lamp_conditions;
  * params, which may be NULL, have none: that is NOC_OK. */
 lamp_conditions *lamp_conditions_create(const noc_import_params *params, noc_log *log, noc_status *status);
 void lamp_conditions_destroy(lamp_conditions *c);
-/* Is any of them on the street that a lamp stands in? c may be NULL. */
-bool lamp_conditions_ask_street(const lamp_conditions *c);
+/* Is any of them on the roads that a lamp stands beside? c may be NULL. */
+bool lamp_conditions_ask_roads(const lamp_conditions *c);
 
 /* Bits of the conditions that a tag of this name is asked by; c may be NULL. Is there any? */
 bool lamp_conditions_of_key(const lamp_conditions *c, const char *key, uint64_t asked[GEO_CONDITIONS / 64]);
@@ -29,11 +29,16 @@ void lamp_conditions_tag(const lamp_conditions *c, const uint64_t asked[GEO_COND
 typedef struct lamp_subject {
     const geo_lamp *lamp; /* NULL: no lamp, but a light of another class */
     const char *cls, *file, *street;
+    const char *road; /* the word of its highway */
     bool inferred;
 } lamp_subject;
 /* Do all conditions of that rule, or group, hold? */
 bool lamp_rule_holds(const lamp_conditions *c, size_t rule, const lamp_subject *of);
 bool lamp_group_holds(const lamp_conditions *c, size_t group, const lamp_subject *of);
+
+/* The condition of that rule, from 1 on, which a road of that highway would meet; 0: there is none. tag: of those that
+ * ask the lamp's own tags for highway, else of those that ask for road. */
+size_t lamp_rule_means_road(const lamp_conditions *c, size_t rule, const char *highway, bool tag);
 
 /* A rule's or group's place: its own, or "rule 3". */
 const char *lamp_rule_place(const char *place, const char *what, size_t index, char text[40]);

@@ -146,7 +146,7 @@ static void stand_inferred(importer *im, pending_lamp *p, const city_lamp_params
     road_lamps_raise(im, p);
     geo_lamp lamp = p->lamp;
     geo_fitting fitting;
-    luminaires_dress(im, NULL, p->along, &lamp, &fitting);
+    luminaires_dress(im, NULL, (lamp_roads){ p->along, p->along }, &lamp, &fitting);
     int lights = city_add_lamp(im->scene, &lamp, &untold, true, NULL);
     im->report->lamps_inferred += lights > 0 ? (size_t)lights : 0;
 }
@@ -184,7 +184,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         size_t moved = params->tally->moved;
         geo_lamp lamp = p->lamp;
         geo_fitting fitting;
-        luminaires_dress(im, in, p->street, &lamp, &fitting);
+        luminaires_dress(im, in, road_lamps_near(im, lamp.xyz), &lamp, &fitting);
         int lights = city_add_lamp(im->scene, &lamp, params, false, in->issues);
         in->file.lights += lights > 0 ? (size_t)lights : 0;
         in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
@@ -363,12 +363,13 @@ static noc_status ask_roads(importer *im) {
         return noc_no_memory(im->log, "import");
     if (!im->has_roads) /* surfaces are nearer to the truth */
         road_lamps_face(im, roads);
-    if (luminaires_ask_street(im))
-        road_lamps_street(im, roads);
     noc_status status = NOC_OK;
     if (im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && missing))
         status = road_lamps_add(im, roads);
-    city_roads_destroy(roads);
+    if (luminaires_ask_roads(im))
+        im->roads_by_place = roads;
+    else
+        city_roads_destroy(roads);
     return status;
 }
 

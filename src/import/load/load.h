@@ -70,8 +70,7 @@ typedef struct pending_lamp {
     geo_lamp lamp; /* local metres; id in importer.names */
     given_place given;
     size_t input;
-    const geo_road *along;  /* a lamp that is placed along this one; NULL: it is the input's */
-    const geo_road *street; /* that it stands beside, where rules or groups ask; NULL: none */
+    const geo_road *along; /* a lamp that is placed along this one; NULL: it is the input's */
 } pending_lamp;
 
 /* How surfaces of a file look: a geo_appearance that is of use. */
@@ -188,8 +187,9 @@ typedef struct importer {
     NOC_ARRAY(float) heights; /* of buildings, m */
     NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
-    NOC_ARRAY(geo_road) roads; /* local metres; texts and coordinates in importer.names */
-    noc_map road_places;       /* of those, by which a second one is told */
+    NOC_ARRAY(geo_road) roads;         /* local metres; texts and coordinates in importer.names */
+    noc_map road_places;               /* of those, by which a second one is told */
+    struct city_roads *roads_by_place; /* of those, while lamps are stood whose road is asked for; NULL: it is not */
     NOC_ARRAY(pending_track) tracks;
     geo_triangles green, squares, lots; /* areas of maps that are drawn: lawns, pavements, roads; as water */
     geo_triangles water;                /* of maps that are read for their roads; local metres, z of no use */
@@ -274,10 +274,15 @@ typedef struct luminaires luminaires;
 struct lamp_subject;
 noc_status luminaires_start(importer *im); /* what is wrong with them is told before anything is read */
 void luminaires_free(luminaires *l);
-bool luminaires_ask_street(const importer *im); /* of a lamp that does not tell it */
+bool luminaires_ask_roads(const importer *im); /* which a lamp stands beside */
+/* Roads that a lamp stands beside; NULL: none is known. */
+typedef struct lamp_roads {
+    const geo_road *street; /* the nearest that has a name */
+    const geo_road *beside; /* the nearest, named or not */
+} lamp_roads;
 /* A lamp as the rules have it. Its fitting is the one given, for as long as that lives. in: its input; NULL: it is
- * placed by a rule. street: the road that it stands beside; NULL: none is known. */
-void luminaires_dress(importer *im, const input *in, const geo_road *street, geo_lamp *lamp, geo_fitting *fitting);
+ * placed by a rule. */
+void luminaires_dress(importer *im, const input *in, lamp_roads roads, geo_lamp *lamp, geo_fitting *fitting);
 void luminaires_dress_inferred(void *importer, geo_lamp *lamp, geo_fitting *fitting); /* city_lamp_params.dress */
 /* Of one that is looked at and not stood: counts what the rules leave untold. */
 void luminaires_see(importer *im, input *in, geo_lamp *lamp);
@@ -399,8 +404,8 @@ struct city_roads;
 noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 /* Lamps that do not say which way they face look across the nearest road. */
 void road_lamps_face(importer *im, const struct city_roads *roads);
-/* Finds the road that each lamp stands beside. */
-void road_lamps_street(importer *im, const struct city_roads *roads);
+/* Roads that a lamp at a place stands beside, where that is asked for. */
+lamp_roads road_lamps_near(const importer *im, const double xy[2]);
 /* One on a bridge stands on the line between the ground at its ends. */
 void road_lamps_raise(const importer *im, pending_lamp *p);
 

@@ -150,7 +150,7 @@ void luminaires_free(luminaires *l) {
     free(l);
 }
 
-bool luminaires_ask_street(const importer *im) { return lamp_conditions_ask_street(im->luminaires->conditions); }
+bool luminaires_ask_roads(const importer *im) { return lamp_conditions_ask_roads(im->luminaires->conditions); }
 
 /* ---- lamps ---- */
 
@@ -193,7 +193,12 @@ int luminaires_group(importer *im, const lamp_subject *of) {
     return 0;
 }
 
-void luminaires_dress(importer *im, const input *in, const geo_road *street, geo_lamp *lamp, geo_fitting *fitting) {
+static const char *highway_word(const geo_road *road) {
+    const geo_highway *highway = road ? geo_highway_get(road->highway) : NULL;
+    return highway ? highway->word : NULL;
+}
+
+void luminaires_dress(importer *im, const input *in, lamp_roads roads, geo_lamp *lamp, geo_fitting *fitting) {
     luminaires *l = im->luminaires;
     if (!in)
         lamp_conditions_none(l->conditions, lamp);
@@ -201,7 +206,8 @@ void luminaires_dress(importer *im, const input *in, const geo_road *street, geo
     const lamp_subject of = { .lamp = &told,
                               .cls = "lamp",
                               .file = in ? in->path : NULL,
-                              .street = street ? street->name : NULL,
+                              .street = roads.street ? roads.street->name : NULL,
+                              .road = highway_word(roads.beside),
                               .inferred = !in };
     *fitting = geo_no_fitting();
     for (size_t i = 0; i < im->params->luminaire_count; i++) {
@@ -216,13 +222,13 @@ void luminaires_dress(importer *im, const input *in, const geo_road *street, geo
 
 void luminaires_see(importer *im, input *in, geo_lamp *lamp) {
     geo_fitting fitting;
-    luminaires_dress(im, in, NULL, lamp, &fitting);
+    luminaires_dress(im, in, (lamp_roads){ 0 }, lamp, &fitting);
     report_assumed(&in->file, lamp);
     lamp->fitting = NULL;
 }
 
 void luminaires_dress_inferred(void *im, geo_lamp *lamp, geo_fitting *fitting) {
-    luminaires_dress(im, NULL, NULL, lamp, fitting);
+    luminaires_dress(im, NULL, road_lamps_near(im, lamp->xyz), lamp, fitting);
 }
 
 /* Lights of an input that is no city: those from there on, and triangles of meshes. */
@@ -282,12 +288,41 @@ noc_status luminaires_say(importer *im) {
     return status;
 }
 
+/* Of a rule that matches no lamp: what its author may have meant of roads. */
+static void warn_idle(const importer *im, size_t rule) {
+    const noc_luminaire_rule *r = &im->params->luminaires[rule];
+    const lamp_conditions *c = im->luminaires->conditions;
+    const char *why = "";
+    char shown[60], tag[200] = "";
+    bool asks = false, meant = false, there = false;
+    for (size_t i = 0; i < r->condition_count; i++)
+        asks = asks || !strcmp(r->conditions[i].key, "road");
+    for (int i = 1; geo_highway_get(i); i++) {
+        size_t by_tag = lamp_rule_means_road(c, rule, geo_highway_get(i)->word, true);
+        if (by_tag && !*tag)
+            noc_snprintf(tag, sizeof(tag), ": %.20s is asked of its own tags, and a road's kind is asked by road: %s",
+                         r->conditions[by_tag - 1].key,
+                         noc_text_clean(shown, sizeof(shown), r->conditions[by_tag - 1].test));
+        meant = meant || lamp_rule_means_road(c, rule, geo_highway_get(i)->word, false);
+    }
+    for (size_t i = 0; i < im->roads.len && !there; i++)
+        there = lamp_rule_means_road(c, rule, highway_word(&im->roads.data[i]), false) > 0;
+    if (asks && !meant)
+        why = ": road is one of OpenStreetMap's words for the nearest road (residential, primary, ...), and a column "
+              "of that name is asked by tag:road";
+    else if (asks && !im->roads.len)
+        why = ": the inputs hold no roads, which maps have";
+    else if (asks && !there)
+        why = ": no road of the inputs is of that kind";
+    noc_warn(im->log, "%s: the rule matches no lamp%s%s", im->luminaires->matched[rule].place, tag, *tag ? "" : why);
+}
+
 noc_status luminaires_finish(importer *im) {
     const noc_import_params *p = im->params;
     noc_status status = NOC_OK;
     for (size_t i = 0; i < p->luminaire_count && !im->inspect; i++)
         if (!im->luminaires->matched[i].lamps)
-            noc_warn(im->log, "%s: the rule matches no lamp", im->luminaires->matched[i].place);
+            warn_idle(im, i);
     for (size_t i = 0; i < p->group_count && !status; i++)
         status = start_group(im, &p->groups[i], im->luminaires->group[i]);
     return status ? status : luminaires_say(im);

@@ -113,14 +113,14 @@ void road_lamps_face(importer *im, const city_roads *roads) {
     double facing[2];
     for (size_t i = 0; i < im->lamps.len; i++) {
         geo_lamp *lamp = &im->lamps.data[i].lamp;
-        if (!isfinite(lamp->direction) && lamp->mount != GEO_MOUNT_WALL && city_roads_facing(roads, lamp->xyz, facing))
+        if (!isfinite(lamp->direction) && lamp->mount != GEO_MOUNT_WALL && city_roads_beside(roads, lamp->xyz, facing))
             lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
     }
 }
 
-void road_lamps_street(importer *im, const city_roads *roads) {
-    for (size_t i = 0; i < im->lamps.len; i++)
-        im->lamps.data[i].street = city_roads_street(roads, im->lamps.data[i].lamp.xyz);
+lamp_roads road_lamps_near(const importer *im, const double xy[2]) {
+    const city_roads *roads = im->roads_by_place;
+    return roads ? (lamp_roads){ city_roads_street(roads, xy), city_roads_beside(roads, xy, NULL) } : (lamp_roads){ 0 };
 }
 
 void road_lamps_raise(const importer *im, pending_lamp *p) {

@@ -8,7 +8,7 @@ static bool surfaces_wanted(const noc_import_params *params) {
 
 bool roads_wanted(const importer *im) {
     const noc_import_params *p = im->params;
-    return p->infer_lamps != NOC_SWITCH_OFF || p->traffic == NOC_SWITCH_ON || luminaires_ask_street(im) ||
+    return p->infer_lamps != NOC_SWITCH_OFF || p->traffic == NOC_SWITCH_ON || luminaires_ask_roads(im) ||
            surfaces_wanted(p);
 }
 

@@ -1,5 +1,6 @@
 /* The scene's side: parts of files into the scene, in the order of the files, whatever the order they were read in. One
  * mesh an object and class, so that ids stay findable and a mesh has one material. */
+#include "city/city.h"
 #include "import/load/load.h"
 
 #include <math.h>
@@ -201,6 +202,7 @@ void take_destroy(importer *im) {
     array_free(&im->lamps);
     array_free(&im->footprints);
     array_free(&im->roads);
+    city_roads_destroy(im->roads_by_place);
     map_free(&im->road_places);
     array_free(&im->tracks);
     geo_triangles_free(&im->water);

@@ -21,53 +21,33 @@ static const char *value_of(const lamp_tag *tags, size_t count, const char *key)
     return NULL;
 }
 
-/* Is a key there with a value other than no? */
+/* Is a key there with a value other than no? F is that of Geofabrik's Shapefiles. */
 static bool has(const lamp_tag *tags, size_t count, const char *key) {
     const char *value = value_of(tags, count, key);
-    return value && strcmp(value, "no") != 0;
+    return value && strcmp(value, "no") != 0 && strcmp(value, "F") != 0;
+}
+
+/* Shapefiles may have keys in capitals alone, and Geofabrik's call the tag fclass. */
+static const char *highway_of(const lamp_tag *tags, size_t count) {
+    static const char *const keys[] = { "highway", "fclass" };
+    for (size_t k = 0; k < NOC_COUNT(keys); k++)
+        for (size_t i = 0; i < count; i++)
+            if (noc_ieq(tags[i].key, keys[k]) && tags[i].value && *tags[i].value)
+                return tags[i].value;
+    return NULL;
 }
 
 /* ---- what it is ---- */
 
-static const struct {
-    const char *value;
-    geo_road_class cls;
-    bool motor;
-} classes[] = {
-    { "motorway", GEO_ROAD_MOTORWAY, true },
-    { "trunk", GEO_ROAD_TRUNK, true },
-    { "primary", GEO_ROAD_PRIMARY, true },
-    { "secondary", GEO_ROAD_SECONDARY, true },
-    { "tertiary", GEO_ROAD_TERTIARY, true },
-    { "residential", GEO_ROAD_MINOR, true },
-    { "unclassified", GEO_ROAD_MINOR, true },
-    { "road", GEO_ROAD_MINOR, true },
-    { "living_street", GEO_ROAD_LIVING, true },
-    { "service", GEO_ROAD_SERVICE, true },
-    { "busway", GEO_ROAD_SERVICE, false },
-    { "bus_guideway", GEO_ROAD_SERVICE, false },
-    { "pedestrian", GEO_ROAD_PEDESTRIAN, false },
-    { "footway", GEO_ROAD_PATH, false },
-    { "cycleway", GEO_ROAD_PATH, false },
-    { "path", GEO_ROAD_PATH, false },
-    { "steps", GEO_ROAD_PATH, false },
-    { "bridleway", GEO_ROAD_PATH, false },
-    { "track", GEO_ROAD_TRACK, false },
-};
-
-/* With its _link, of the larger ones. */
 static bool class_of(const char *value, geo_road *road) {
-    size_t whole = strlen(value), size = whole;
-    road->link = whole > 5 && !strcmp(value + whole - 5, "_link");
-    size -= road->link ? 5 : 0;
-    for (size_t i = 0; i < NOC_COUNT(classes); i++) {
-        if (strlen(classes[i].value) != size || memcmp(classes[i].value, value, size) != 0)
-            continue;
-        road->cls = classes[i].cls;
-        road->motor = classes[i].motor;
-        return !road->link || road->cls <= GEO_ROAD_TERTIARY;
-    }
-    return false;
+    road->highway = geo_highway_find(value);
+    const geo_highway *highway = geo_highway_get(road->highway);
+    if (!highway)
+        return false;
+    road->cls = highway->cls;
+    road->motor = highway->motor;
+    road->link = highway->link;
+    return true;
 }
 
 /* The more special key decides. */
@@ -127,7 +107,9 @@ static double width_of(const lamp_tag *tags, size_t count) {
 }
 
 static int oneway_of(const lamp_tag *tags, size_t count, const geo_road *road) {
-    static const char *const along[] = { "yes", "1", "true", NULL }, *const against[] = { "-1", "reverse", NULL };
+    /* F and T are Geofabrik's: from the line's first point, to it */
+    static const char *const along[] = { "yes", "1", "true", "F", NULL }, *const against[] = { "-1", "reverse", "T",
+                                                                                               NULL };
     const char *value = value_of(tags, count, "oneway");
     if (is(value, along))
         return 1;
@@ -140,7 +122,7 @@ static int oneway_of(const lamp_tag *tags, size_t count, const geo_road *road) {
 bool road_read(const lamp_tag *tags, size_t count, geo_road *road) {
     static const char *const rails[] = { "rail", "light_rail", "tram", "subway", "narrow_gauge", NULL };
     static const char *const rings[] = { "roundabout", "circular", NULL }, *const dark[] = { "no", "disused", NULL };
-    const char *highway = value_of(tags, count, "highway"), *name = value_of(tags, count, "name");
+    const char *highway = highway_of(tags, count), *name = value_of(tags, count, "name");
     const char *lit = value_of(tags, count, "lit");
     *road = (geo_road){ .id = "", .name = name ? name : "", .width = NAN, .speed = NAN };
     if (has(tags, count, "area"))
@@ -149,7 +131,6 @@ bool road_read(const lamp_tag *tags, size_t count, geo_road *road) {
         if (!is(value_of(tags, count, "railway"), rails))
             return false;
         road->cls = GEO_ROAD_RAIL;
-        road->link = false;
     }
     road->bridge = has(tags, count, "bridge");
     road->tunnel = has(tags, count, "tunnel") || has(tags, count, "covered");

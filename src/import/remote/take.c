@@ -126,6 +126,8 @@ static noc_status take_road(remote_taker *t, remote_record *one) {
     const int counts[] = { road.lanes, road.lanes_forward, road.lanes_backward };
     for (size_t i = 0; i < NOC_COUNT(counts); i++)
         kinds = kinds && counts[i] >= 0 && counts[i] <= GEO_ROAD_MOST_LANES;
+    const geo_highway *highway = geo_highway_get(road.highway);
+    kinds = kinds && (highway ? highway->cls == road.cls : !road.highway);
     kinds = kinds && road.layer >= -GEO_ROAD_MOST_LAYER && road.layer <= GEO_ROAD_MOST_LAYER;
     bool numbers = !(road.width <= 0) && !(road.width > LAMP_MOST_METRES) && !(road.speed <= 0) && !(road.speed > 500);
     const void *xyz = remote_get_array(one, road.point_count, 3 * sizeof(double));

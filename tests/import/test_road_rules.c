@@ -1,0 +1,217 @@
+/* Rules and groups that ask for the kind of the road that a lamp stands beside. */
+#include "test.h"
+
+#include <nocturne/nocturne.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/noc-road-rules-XXXXXX";
+static noc_log *log_;
+static char told[2000];
+
+static void keep(void *user, noc_log_level level, const char *text) {
+    (void)user;
+    size_t n = strlen(told);
+    if (level <= NOC_LOG_WARN)
+        snprintf(told + n, sizeof(told) - n, "%s\n", text);
+}
+
+static const char *in_folder(const char *name) {
+    static char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    return path;
+}
+
+/* Six roads, one north of the other, from west to east: the second one is the pavement of the first. */
+static const struct {
+    double latitude;
+    const char *tags;
+} roads[] = {
+    { 48.7600, "<tag k='highway' v='residential'/><tag k='lit' v='no'/>" },
+    { 48.76005, "<tag k='highway' v='footway'/><tag k='lit' v='no'/>" },
+    { 48.7610, "<tag k='highway' v='primary'/><tag k='name' v='Ring'/><tag k='lit' v='yes'/>" },
+    { 48.7620, "<tag k='highway' v='primary_link'/><tag k='lit' v='no'/>" },
+    { 48.7630, "<tag k='highway' v='footway'/><tag k='lit' v='no'/>" },
+    { 48.7640, "<tag k='highway' v='living_street'/><tag k='lit' v='no'/>" },
+};
+
+/* Of lamps beside the roads, the first one between a carriageway and its pavement, the last one beside none. */
+static const double lamps[] = { 48.76004, 48.76095, 48.76195, 48.76298, 48.76396, 48.7635 };
+
+static void write_map(FILE *f) {
+    fputs("<osm version='0.6'>", f);
+    for (int i = 0; i < 12; i++)
+        fprintf(f, "<node id='%d' lat='%.5f' lon='%s'/>", i + 1, roads[i / 2].latitude, i % 2 ? "11.4240" : "11.4200");
+    for (int i = 0; i < 6; i++)
+        fprintf(f, "<node id='%d' lat='%.5f' lon='11.4220'><tag k='highway' v='street_lamp'/></node>", i + 21,
+                lamps[i]);
+    for (int i = 0; i < 6; i++)
+        fprintf(f, "<way id='%d'><nd ref='%d'/><nd ref='%d'/>%s</way>", i + 31, 2 * i + 1, 2 * i + 2, roads[i].tags);
+    fputs("</osm>", f);
+}
+
+static int start(void **state) {
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    log_ = noc_log_create(&(noc_log_params){ .message = keep, .level = NOC_LOG_WARN });
+    FILE *f = fopen(in_folder("map.osm"), "w");
+    assert_non_null(f);
+    write_map(f);
+    return fclose(f);
+}
+
+static int end(void **state) {
+    (void)state;
+    unlink(in_folder("map.osm"));
+    unlink(in_folder("map.geojson"));
+    noc_log_destroy(log_);
+    return rmdir(folder);
+}
+
+typedef struct loaded {
+    noc_scene *scene;
+    noc_report *report;
+    size_t lights; /* slots */
+} loaded;
+
+static loaded load(const char *name, const noc_import_params *params) {
+    loaded l = { .scene = noc_scene_create(log_) };
+    noc_scene_info info;
+    *told = 0;
+    if (noc_scene_load(l.scene, (const char *[]){ in_folder(name) }, 1, params, &l.report))
+        fail_msg("%s", told);
+    noc_scene_get_info(l.scene, &info);
+    l.lights = info.light_slots;
+    return l;
+}
+
+static void unload(loaded *l) {
+    noc_report_destroy(l->report);
+    noc_scene_destroy(l->scene);
+}
+
+/* "125": the mapped lamps that are in the group of those; *inferred: how many of the others. */
+static size_t in_group(const loaded *l, char found[16]) {
+    size_t n = 0, inferred = 0;
+    for (size_t i = 0; i < l->lights; i++) {
+        noc_light_info light;
+        assert_int_equal(noc_scene_get_light(l->scene, i, &light), NOC_OK);
+        if (light.light.group != 1)
+            continue;
+        inferred += light.light.inferred;
+        if (!light.light.inferred && n < 15)
+            found[n++] = light.light.name[strlen(light.light.name) - 1];
+    }
+    found[n] = 0;
+    return inferred;
+}
+
+static size_t assert_matches(const char *name, const char *test, noc_switch infer, const char *expected) {
+    const noc_condition condition = { "road", test };
+    noc_group_rule group = noc_group_default_rule();
+    noc_luminaire_rule rule = noc_luminaire_default_rule();
+    noc_import_params params = noc_import_default_params();
+    group.name = "those";
+    group.conditions = rule.conditions = &condition;
+    group.condition_count = rule.condition_count = 1;
+    params.groups = &group;
+    params.group_count = 1;
+    params.luminaires = &rule;
+    params.luminaire_count = 1;
+    params.infer_lamps = infer;
+    loaded l = load(name, &params);
+    char found[16];
+    size_t inferred = in_group(&l, found);
+    if (strcmp(found, expected))
+        fail_msg("%s: %s: %s, not %s", name, test, found, expected);
+    assert_int_equal(noc_report_get_rule(l.report, 0)->lamps, strlen(expected) + inferred);
+    unload(&l);
+    return inferred;
+}
+
+static void test_roads_of_a_map(void **state) {
+    (void)state;
+    static const char *const rows[][2] = {
+        { "residential", "1" }, /* whose pavement is nearer */
+        { "RESIDENTIAL", "1" },
+        { "primary", "2" },
+        { "primary*", "23" }, /* with its links */
+        { "footway", "4" },
+        { "residential|living_street", "15" },
+        { "!residential", "2345" }, /* what stands beside none is not asked */
+        { "absent", "6" },
+        { "*", "12345" },
+        { "trunk", "" },
+    };
+    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
+        assert_int_equal(assert_matches("map.osm", rows[i][0], NOC_SWITCH_OFF, rows[i][1]), 0);
+}
+
+static void test_lamps_that_are_placed(void **state) {
+    (void)state;
+    assert_true(assert_matches("map.osm", "primary", NOC_SWITCH_ON, "2") > 3);
+    assert_int_equal(assert_matches("map.osm", "!primary", NOC_SWITCH_ON, "1345"), 0);
+}
+
+/* Columns of other maps: in capitals, and as Geofabrik's Shapefiles have it. */
+static void test_columns_of_a_map(void **state) {
+    (void)state;
+    static const char *const keys[] = { "highway", "HIGHWAY", "fclass" };
+    for (size_t i = 0; i < 3; i++) {
+        FILE *f = fopen(in_folder("map.geojson"), "w");
+        assert_non_null(f);
+        fprintf(f,
+                "{\"type\":\"FeatureCollection\",\"features\":["
+                "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Point\",\"coordinates\":[11.4220,48.76004]},"
+                "\"properties\":{\"highway\":\"street_lamp\",\"ref\":\"1\"}},"
+                "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Point\",\"coordinates\":[11.4220,48.76104]},"
+                "\"properties\":{\"highway\":\"street_lamp\",\"ref\":\"2\"}},"
+                "{\"type\":\"Feature\",\"geometry\":{\"type\":\"LineString\",\"coordinates\":[[11.42,48.76],"
+                "[11.424,48.76]]},\"properties\":{\"%s\":\"residential\",\"bridge\":\"F\"}},"
+                "{\"type\":\"Feature\",\"geometry\":{\"type\":\"LineString\",\"coordinates\":[[11.42,48.761],"
+                "[11.424,48.761]]},\"properties\":{\"%s\":\"tertiary\",\"tunnel\":\"F\"}}]}",
+                keys[i], keys[i]);
+        fclose(f);
+        assert_matches("map.geojson", "residential", NOC_SWITCH_OFF, "1");
+        assert_matches("map.geojson", "tertiary", NOC_SWITCH_OFF, "2");
+    }
+}
+
+static void assert_warned(const char *key, const char *test, const char *expected) {
+    const noc_condition condition = { key, test };
+    noc_luminaire_rule rule = noc_luminaire_default_rule();
+    noc_import_params params = noc_import_default_params();
+    rule.conditions = &condition;
+    rule.condition_count = 1;
+    rule.place = "town.yaml:4";
+    params.luminaires = &rule;
+    params.luminaire_count = 1;
+    params.infer_lamps = NOC_SWITCH_OFF;
+    loaded l = load("map.osm", &params);
+    char line[400];
+    snprintf(line, sizeof(line), "town.yaml:4: the rule matches no lamp%s\n", expected);
+    if (strlen(told) < strlen(line) || strcmp(told + strlen(told) - strlen(line), line))
+        fail_msg("%s: %s: %s", key, test, told);
+    unload(&l);
+}
+
+static void test_what_idle_rules_may_mean(void **state) {
+    (void)state;
+    assert_warned("highway", "residential",
+                  ": highway is asked of its own tags, and a road's kind is asked by road: residential");
+    assert_warned("highway", "bus_stop", "");
+    assert_warned("surface", "residential", "");
+    assert_warned("road", "Main Street",
+                  ": road is one of OpenStreetMap's words for the nearest road (residential, primary, ...), and a "
+                  "column of that name is asked by tag:road");
+    assert_warned("road", "motorway", ": no road of the inputs is of that kind");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_roads_of_a_map),
+        cmocka_unit_test(test_lamps_that_are_placed),
+        cmocka_unit_test(test_columns_of_a_map),
+        cmocka_unit_test(test_what_idle_rules_may_mean),
+    };
+    return cmocka_run_group_tests(tests, start, end);
+}
