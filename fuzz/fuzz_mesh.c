@@ -11,6 +11,17 @@ static noc_status as_it_is(void *ctx, double *xyz, size_t count) {
     return NOC_OK;
 }
 
+static noc_status look_at(void *ctx, int material, const mesh_image *image) {
+    double *sum = ctx;
+    FUZZ_REQUIRE(material >= 0 && image->name && (unsigned)image->wrap <= NOC_WRAP_CLAMP);
+    for (int k = 0; k < 3; k++)
+        FUZZ_REQUIRE(image->albedo[k] >= 0 && image->albedo[k] <= 1);
+    for (size_t i = 0; i < image->size; i++)
+        *sum += image->data[i];
+    *sum += (double)strlen(image->name);
+    return NOC_OK;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_part part[FUZZ_PARTS];
     int n = fuzz_parts(data, size, part), errors = 0;
@@ -27,7 +38,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     noc_stream *stream = noc_stream_open(path, log, NULL);
     noc_status status = NOC_ERR_IO;
     if (stream)
-        status = reader->read_mesh(path, stream, &params, scene, &(mesh_place){ &sum, as_it_is }, issues, &format);
+        status =
+            reader->read_mesh(path, stream, &params, scene, &(mesh_place){ &sum, as_it_is, look_at }, issues, &format);
     if (!status)
         status = noc_scene_commit(scene);
     fuzz_memory_back();

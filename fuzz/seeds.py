@@ -26,6 +26,13 @@ put("obj", "bare", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
 put("obj", "continued", parts("v 0 0 0 \\\n\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nf 1 2 \\\n3 4 5\nusemtl none\n"
                               "f 1 2 99\n", "newmtl a\n"))
 
+put("obj", "textured", parts("mtllib side.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 2 0\n"
+                             "vt 0 0\nvt 1 .5 0\n vt 0.5\n"
+                             "vt x\nvt 1 \\\n 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n"
+                             "f -1/-1 -2/-2/1 -3/-3 -4/-4 -5/-5\n"
+                             "f 1/1 2/9 3/3\nf 1 2/2 3\nusemtl b\nf 1 2 3\n",
+                             "newmtl a\nKd .5 .5 .5\nmap_Kd -s 2 2 -o .5 .5 0 -clamp on -mm 0 1 \"a b.png\"\n"
+                             "newmtl b\nmap_Kd -x.png\nmap_Kd -o 1\nmap_Ks c.png\n"))
 put("obj", "libraries", parts("mtllib side.mtl side.mtl\nmtllib a\\\\side.mtl\nmtllib \"side.mtl\"\nv 0 0 0\nv 1 0 0\n"
                               "v 1 1 0\nusemtl wall\nf -3 -2 -1\n", mtl))
 
@@ -76,6 +83,21 @@ strip["meshes"][0]["primitives"] = [{"attributes": {"POSITION": 0}, "mode": 5},
                                     {"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]
 strip["bufferViews"][0]["byteStride"] = 12
 put("gltf", "strip", parts(json.dumps(strip), positions))
+picture = seeds_pictures.rgb
+drawn = gltf({"byteLength": 60, "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()})
+drawn["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 2
+drawn["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {
+    "index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0], "rotation": 1, "scale": [2, 3]}}}
+drawn["accessors"].append({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"})
+drawn["bufferViews"] += [{"buffer": 0, "byteLength": 32}, {"buffer": 1, "byteLength": len(picture)}]
+drawn["buffers"].append({"byteLength": len(picture), "uri": "data:image/png;base64," +
+                         base64.b64encode(picture).decode()})
+drawn["textures"] = [{"source": 0, "sampler": 0}]
+drawn["samplers"] = [{"wrapS": 33648, "wrapT": 10497}]
+drawn["images"] = [{"bufferView": 3, "mimeType": "image/png"}]
+put("gltf", "image.gltf", json.dumps(drawn))
+drawn["images"] = [{"uri": "data:image/png;base64," + base64.b64encode(picture).decode()}]
+put("gltf", "image-uri.gltf", json.dumps(drawn))
 put("gltf", "beside", parts(json.dumps(gltf({"byteLength": 60, "uri": "side.bin"})), positions))
 
 # ---- PLY ----

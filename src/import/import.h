@@ -67,10 +67,21 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
  * is refused. Never waits for a pipe. */
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
 
-/* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */
+/* An image that a material of a mesh looks like. */
+typedef struct mesh_image {
+    const char *name; /* of its file, as the file that is read has it; of one that lies in that, for messages */
+    noc_wrap wrap;
+    float albedo[3];           /* that it is times */
+    const unsigned char *data; /* size bytes that lie in the file that is read, copied; NULL: it is a file beside it */
+    size_t size;
+} mesh_image;
+
+/* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place, and hears
+ * which images materials of the scene look like. */
 typedef struct mesh_place {
     void *ctx;
     noc_status (*points)(void *ctx, double *xyz, size_t count);
+    noc_status (*image)(void *ctx, int material, const mesh_image *image); /* NULL: they are of no use */
 } mesh_place;
 
 /* noc_scene_add_mesh, with the triangles that it drops counted. false after reporting. */
@@ -81,7 +92,8 @@ typedef struct mesh_parts {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
-    int (*material)(void *ctx, const noc_material *material); /* its index; negative after reporting */
+    /* image: that it looks like where a mesh has places in it; NULL: none */
+    noc_status (*material)(void *ctx, const noc_material *material, const mesh_image *image, int *index);
     /* the mesh's, as the file has them: may be moved */
     noc_status (*mesh)(void *ctx, noc_mesh *mesh, double *positions);
 } mesh_parts;

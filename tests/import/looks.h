@@ -16,24 +16,24 @@
 
 static char folder[] = "/tmp/nocturne-looks-XXXXXX";
 
-static const char *in_folder(const char *name) {
+static inline const char *in_folder(const char *name) {
     static char at[96];
     snprintf(at, sizeof(at), "%s/%s", folder, name);
     return at;
 }
 
-static void write_bytes(const char *name, const void *bytes, size_t size) {
+static inline void write_bytes(const char *name, const void *bytes, size_t size) {
     FILE *f = fopen(in_folder(name), "wb");
     assert_non_null(f);
     assert_true(fwrite(bytes, 1, size, f) == size && !fclose(f));
 }
 
-static void write_file(const char *name, const char *text) { write_bytes(name, text, strlen(text)); }
+static inline void write_file(const char *name, const char *text) { write_bytes(name, text, strlen(text)); }
 
-static void write_image(const char *name) {
+static inline void write_image(const char *name) {
     noc_image *image = noc_image_create(2, 2, NULL);
     noc_display_params linear = noc_display_default_params();
-    image->rgb[0] = image->rgb[1] = image->rgb[2] = 100;
+    image->rgb[0] = image->rgb[1] = image->rgb[2] = 1e6f;
     linear.auto_exposure = false;
     linear.tonemap = NOC_TONEMAP_LINEAR;
     linear.ev100 = 0;
@@ -41,7 +41,7 @@ static void write_image(const char *name) {
     noc_image_destroy(image);
 }
 
-static noc_import_params looks_params(bool textures) {
+static inline noc_import_params looks_params(bool textures) {
     noc_import_params p = noc_import_default_params();
     p.textures = textures;
     p.windows = NOC_SWITCH_OFF;
@@ -49,7 +49,7 @@ static noc_import_params looks_params(bool textures) {
     return p;
 }
 
-static noc_scene *load_by(const char *name, const noc_import_params *p, noc_report **report) {
+static inline noc_scene *load_by(const char *name, const noc_import_params *p, noc_report **report) {
     noc_log *log = noc_log_create(NULL);
     const char *paths[] = { in_folder(name) };
     noc_scene *scene = noc_scene_create(log);
@@ -60,13 +60,13 @@ static noc_scene *load_by(const char *name, const noc_import_params *p, noc_repo
     return scene;
 }
 
-static noc_scene *load(const char *name, bool textures, noc_report **report) {
+static inline noc_scene *load(const char *name, bool textures, noc_report **report) {
     const noc_import_params p = looks_params(textures);
     return load_by(name, &p, report);
 }
 
 /* How often the report's file has such a line. */
-static size_t told(const noc_report *report, const char *reason) {
+static inline size_t told(const noc_report *report, const char *reason) {
     const noc_report_file *f = noc_report_get_file(report, 0);
     for (size_t i = 0; i < f->line_count; i++)
         if (strstr(f->lines[i].reason, reason))
@@ -76,7 +76,7 @@ static size_t told(const noc_report *report, const char *reason) {
 
 /* The scene's origin lies where it will: walls, and what meshes without classes have for them, are counted from the
  * one at the least x. */
-static const noc_scene_mesh *wall_number(const noc_scene *s, int number) {
+static inline const noc_scene_mesh *wall_number(const noc_scene *s, int number) {
     float least = INFINITY;
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < s->meshes.len; i++) {
@@ -94,12 +94,12 @@ static const noc_scene_mesh *wall_number(const noc_scene *s, int number) {
     return NULL;
 }
 
-static const noc_material *wall_material(const noc_scene *s, int number) {
+static inline const noc_material *wall_material(const noc_scene *s, int number) {
     return &s->materials.data[wall_number(s, number)->material];
 }
 
 /* Is the wall in an image whose u goes along y, and v upwards? */
-static void expect_upright(const noc_scene *s, int number) {
+static inline void expect_upright(const noc_scene *s, int number) {
     const noc_scene_mesh *wall = wall_number(s, number);
     assert_true(wall->uv != 0);
     for (size_t v = 0; v < 4; v++) {
@@ -109,7 +109,7 @@ static void expect_upright(const noc_scene *s, int number) {
     }
 }
 
-static int run_looks(const struct CMUnitTest *tests, size_t count) {
+static inline int run_looks(const struct CMUnitTest *tests, size_t count) {
     char command[96];
     assert_non_null(mkdtemp(folder));
     int failed = _cmocka_run_group_tests("looks", tests, count, NULL, NULL);

@@ -187,6 +187,8 @@ static void cityjson(void **state) {
 
 static void gltf(void **state) {
     refuse_each("glTF", &(import){ { "gltf/embedded.gltf" }, .all = true });
+    refuse_each("glTF with an image", &(import){ { "gltf/image.gltf" } });
+    refuse_each("glTF with an image as text", &(import){ { "gltf/image-uri.gltf" } });
     write_text("library.gltf",
                "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], "
                "\"name\": \"a name longer than sixteen letters\"}, "
@@ -215,6 +217,12 @@ static void obj(void **state) {
     write_text("house.mtl", "newmtl wall\nKd 0.5 0.4 0.3\nnewmtl lamp\nKe 20 18 15\nmap_Kd none.png\n");
     refuse_each("OBJ", &(import){ { "house.obj" } });
     refuse_each("OBJ by the helper", &(import){ { "house.obj" }, .isolate = true });
+    write_text("drawn.obj",
+               "mtllib drawn.mtl\nv 0 0 0\nv 9 0 0\nv 9 9 0\nv 5 3 0\nv 0 9 0\nvt 0 0\nvt 1 0\nvt 1\nvt 0 1\n"
+               "usemtl wall\nf 1/1 2/2 3/3 4/4 5/1\nf 1/1 2/2 5/9\n");
+    write_text("drawn.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd -s 2 2 png/rgb.png\n");
+    refuse_each("OBJ with an image", &(import){ { "drawn.obj" } });
+    refuse_each("OBJ with an image by the helper", &(import){ { "drawn.obj" }, .isolate = true });
 }
 
 static void lamps(void **state) {

@@ -53,8 +53,8 @@ static uint32_t read_material(cj_reading *r, const json_t *material) {
 }
 
 static uint32_t read_texture(cj_reading *r, const json_t *texture) {
-    const char *image = cj_text(texture, "image");
-    cg_look look = { .as = { .f0 = -1, .roughness = -1, .wrap = cg_wrap_of(cj_text(texture, "wrapMode")) } };
+    const char *image = cj_text(texture, "image"), *mode = cj_text(texture, "wrapMode");
+    cg_look look = { .as = { .f0 = -1, .roughness = -1, .wrap = *mode ? cg_wrap_of(mode) : NOC_WRAP_REPEAT } };
     uint64_t known;
     char *key = noc_format("t %d %s", (int)look.as.wrap, image);
     if (key && !map_get(&r->known_looks, key, &known) &&

@@ -90,7 +90,7 @@ static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *resul
         return status;
     size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
     size_t lights = im->scene->lights.len;
-    const mesh_place place = { r, place_mesh_points };
+    const mesh_place place = { r, place_mesh_points, im->params->textures ? look_mesh_image : NULL };
     double lo[2], hi[2];
     bounds_so_far(im, lo, hi);
     geo_sink sink = sink_create(r);

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 #define PALETTE 8 /* materials of a class that varies from building to building */
 
@@ -90,6 +91,7 @@ typedef struct look_group {
 /* An image that surfaces of the scene look like. */
 typedef struct scene_image {
     const char *path; /* in importer.names */
+    uint8_t *data;    /* of one that lies in the input itself, or is kept; NULL: it is a file */
     noc_wrap wrap;
     size_t input;        /* the first that names it */
     uint64_t sum, bytes; /* of its file */
@@ -102,6 +104,7 @@ typedef struct scene_image {
 typedef struct image_use {
     int material;
     uint32_t image;
+    float albedo[3]; /* that it is times */
 } image_use;
 
 /* The object that is being read, as far as it tells it from others (repeat.c). */
@@ -179,6 +182,8 @@ typedef struct importer {
     noc_map image_numbers;                  /* path and wrap -> place in images */
     NOC_ARRAY(scene_image) images;
     NOC_ARRAY(image_use) image_uses;
+    size_t image_bytes;                  /* of those that lie in inputs */
+    _Atomic size_t images_kept;          /* bytes of others */
     NOC_ARRAY(taken_building) buildings; /* where windows are asked for */
     size_t object_mesh;                  /* first mesh of the object that is being taken */
     bool has_roads;
@@ -447,6 +452,9 @@ void look_end_object(reading *r);
 void look_free(reading *r);
 /* The material of such surfaces of the scene. */
 noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material);
+/* mesh_place.image */
+noc_status look_mesh_image(void *reading, int material, const mesh_image *image);
+void look_images_free(importer *im);
 /* Reads the images, when all surfaces are there, and gives them to their materials. */
 noc_status look_read_images(importer *im);
 

@@ -10,6 +10,7 @@
 
 #define MOST_LOOKS 1000000       /* of a file */
 #define MOST_BYTES (256u << 20)  /* of an image's file */
+#define KEPT_BYTES (256u << 20)  /* of all files that are kept until their pixels are read; others are read twice */
 #define PIXELS_AT_ONCE 100000000 /* of images that are read at the same time, but for the last of them */
 
 /* ---- a file's ---- */
@@ -90,16 +91,25 @@ void look_free(reading *r) {
 
 /* ---- the scene's ---- */
 
-/* The number of the image, whose file `in` is if it is new. false: no memory. */
-static bool number_image(importer *im, const input *in, const char *path, noc_wrap wrap, uint64_t *number) {
-    char *key = noc_format("%d %s", (int)wrap, path);
+/* The number of the image, whose file `in` is if it is new. data: of one that lies in `in`. false: no memory. */
+static bool number_image(importer *im, const input *in, const char *path, noc_wrap wrap, const uint8_t *data,
+                         size_t size, uint64_t *number) {
+    char *key = noc_format("%d %s%s", (int)wrap, data ? "in " : "", path);
     bool ok = key && true;
     if (ok && !map_get(&im->image_numbers, key, number)) {
         scene_image image = { .path = arena_strdup(&im->names, path),
                               .wrap = wrap,
                               .input = (size_t)(in - im->inputs) };
         *number = im->images.len;
-        ok = image.path && array_push(&im->images, image) && map_put(&im->image_numbers, key, *number, NULL);
+        ok = image.path && array_reserve(&im->images, im->images.len + 1) &&
+             map_put(&im->image_numbers, key, *number, NULL) && (!data || (image.data = noc_alloc_large(size, 1)));
+        if (ok && data) {
+            memcpy(image.data, data, size);
+            image.bytes = size;
+            im->image_bytes += size;
+        }
+        if (ok)
+            im->images.data[im->images.len++] = image;
     }
     free(key);
     return ok;
@@ -120,7 +130,7 @@ static noc_material material_of(noc_class cls, const geo_appearance *as) {
 noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material) {
     const geo_appearance *as = &look->as;
     uint64_t image = 0, found;
-    if (look->image && !number_image(im, in, look->image, as->wrap, &image))
+    if (look->image && !number_image(im, in, look->image, as->wrap, NULL, 0, &image))
         return noc_no_memory(im->log, in->path);
     char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g", (int)cls, look->image ? (long long)image : -1,
                            as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness);
@@ -135,24 +145,58 @@ noc_status look_material(importer *im, const input *in, noc_class cls, const sur
         if (*material < 0)
             status = NOC_ERR_UNSUPPORTED; /* said by the scene */
         else if (!map_put(&im->looks, key, (uint64_t)*material, NULL) ||
-                 (look->image && !array_push(&im->image_uses, (image_use){ *material, (uint32_t)image })))
+                 (look->image && !array_push(&im->image_uses, (image_use){ *material, (uint32_t)image, { 1, 1, 1 } })))
             status = noc_no_memory(im->log, in->path);
     }
     free(key);
     return status;
 }
 
+noc_status look_mesh_image(void *ctx, int material, const mesh_image *image) {
+    reading *r = ctx;
+    importer *im = r->im;
+    const char *path = image->data ? image->name : find_image(r, image->name);
+    uint64_t number;
+    if (r->look_texts.refused)
+        return noc_no_memory(r->log, r->in->path);
+    if (!path || im->inspect)
+        return NOC_OK;
+    noc_status status = image->data ? take_affords(im, r->in, image->size) : NOC_OK;
+    if (status)
+        return status;
+    image_use use = { .material = material };
+    memcpy(use.albedo, image->albedo, sizeof(use.albedo));
+    if (!number_image(im, r->in, path, image->wrap, image->data, image->size, &number))
+        return noc_no_memory(r->log, r->in->path);
+    use.image = (uint32_t)number;
+    return array_push(&im->image_uses, use) ? NOC_OK : noc_no_memory(r->log, r->in->path);
+}
+
+void look_images_free(importer *im) {
+    for (size_t i = 0; i < im->images.len; i++)
+        free(im->images.data[i].data);
+    array_free(&im->images);
+    array_free(&im->image_uses);
+}
+
 /* ---- images ---- */
 
-/* The whole file. NOC_ERR_FORMAT with *why where it is of no use. */
-static noc_status read_bytes(const importer *im, const scene_image *image, uint8_t **data, size_t *size,
-                             const char **why) {
+/* The whole file into *data, where it is not kept: *read is what the caller frees. NOC_ERR_FORMAT with *why where it is
+ * of no use. */
+static noc_status read_bytes(const importer *im, const scene_image *image, uint8_t **read, const uint8_t **data,
+                             size_t *size, const char **why) {
     const char *from = im->inputs[image->input].path, *name = image->path;
     size_t length = folder_length(from);
     char *folder = noc_strndup(from, length);
     FILE *f = NULL;
-    *data = NULL;
+    *read = NULL;
     *why = NULL;
+    *data = image->data;
+    *size = image->bytes;
+    if (image->data) {
+        free(folder);
+        return NOC_OK;
+    }
     if (!strncmp(name, from, length))
         name += length;
     if (folder)
@@ -163,9 +207,9 @@ static noc_status read_bytes(const importer *im, const scene_image *image, uint8
         *why = "image of more than 256 MB";
         status = NOC_ERR_FORMAT;
     }
-    if (!status && !(*data = noc_alloc(*size + 1)))
+    if (!status && !(*data = *read = noc_alloc(*size + 1)))
         status = NOC_ERR_MEMORY;
-    if (!status && fread(*data, 1, *size, f) != *size) {
+    if (!status && fread(*read, 1, *size, f) != *size) {
         *why = "image that cannot be read";
         status = NOC_ERR_FORMAT;
     }
@@ -176,21 +220,30 @@ static noc_status read_bytes(const importer *im, const scene_image *image, uint8
 
 /* One image of several that are read at once. */
 typedef struct image_job {
-    const importer *im;
+    importer *im;
     scene_image *image;
     bool whole; /* its pixels too; else its size */
     pixel_bytes pixels;
     noc_status status;
 } image_job;
 
+/* Is there room to keep so many bytes? */
+static bool keep(importer *im, size_t size) {
+    if (atomic_fetch_add(&im->images_kept, size) + size <= KEPT_BYTES)
+        return true;
+    atomic_fetch_sub(&im->images_kept, size);
+    return false;
+}
+
 static void run_job(void *ctx, size_t item, int worker) {
     image_job *job = (image_job *)ctx + item;
     scene_image *image = job->image;
     const char *why;
-    uint8_t *data;
+    uint8_t *read;
+    const uint8_t *data;
     size_t size;
     (void)worker;
-    job->status = read_bytes(job->im, image, &data, &size, &why);
+    job->status = read_bytes(job->im, image, &read, &data, &size, &why);
     if (!job->status && job->whole) {
         job->status = pixels_read(data, size, image->path, NULL, &job->pixels);
     } else if (!job->status) {
@@ -204,7 +257,10 @@ static void run_job(void *ctx, size_t item, int worker) {
         image->reason = why ? why : "broken image";
     else if (!job->status && job->pixels.damaged)
         image->reason = "damaged image";
-    free(data);
+    if (read && !job->status && !job->whole && keep(job->im, size))
+        image->data = read;
+    else
+        free(read);
 }
 
 /* Only memory that is refused is a failure. */
@@ -228,15 +284,16 @@ static noc_status read_sizes(importer *im, noc_pool *pool, image_job *jobs) {
 
 /* Do both files hold the same? */
 static noc_status compare(const importer *im, const scene_image *a, const scene_image *b, bool *same) {
-    uint8_t *of_a, *of_b = NULL;
+    uint8_t *read_a, *read_b = NULL;
+    const uint8_t *of_a, *of_b;
     size_t bytes_a, bytes_b;
     const char *why;
-    noc_status status = read_bytes(im, a, &of_a, &bytes_a, &why);
+    noc_status status = read_bytes(im, a, &read_a, &of_a, &bytes_a, &why);
     if (!status)
-        status = read_bytes(im, b, &of_b, &bytes_b, &why);
+        status = read_bytes(im, b, &read_b, &of_b, &bytes_b, &why);
     *same = !status && bytes_a == bytes_b && !memcmp(of_a, of_b, bytes_a);
-    free(of_a);
-    free(of_b);
+    free(read_a);
+    free(read_b);
     return status == NOC_ERR_MEMORY ? noc_no_memory(im->log, a->path) : NOC_OK;
 }
 
@@ -315,7 +372,9 @@ static noc_status add_image(importer *im, image_job *job) {
                             .wrap = image->wrap,
                             .leave_out = image->leave_out };
     image->texture = noc_scene_add_texture(im->scene, &texture);
-    return image->texture < 0 ? NOC_ERR_MEMORY : NOC_OK;
+    if (image->texture < 0) /* said by the scene */
+        return im->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
+    return NOC_OK;
 }
 
 static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
@@ -332,6 +391,8 @@ static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
             if (!status)
                 status = add_image(im, &jobs[i]);
             free(jobs[i].pixels.rgb);
+            free(jobs[i].image->data);
+            jobs[i].image->data = NULL;
         }
         if (!status && progress->update && !progress->update(progress->user, "images", 0.9))
             status = NOC_ERR_CANCELLED;
@@ -363,7 +424,7 @@ static noc_status use_images(importer *im) {
         noc_material m = *noc_scene_material_at(im->scene, use->material);
         if (!(m.texture = im->images.data[use->image].texture))
             continue;
-        m.albedo[0] = m.albedo[1] = m.albedo[2] = 1;
+        memcpy(m.albedo, use->albedo, sizeof(m.albedo));
         status = noc_scene_set_material(im->scene, use->material, &m);
     }
     return status;

@@ -78,7 +78,7 @@ noc_status take_affords(importer *im, const input *in, size_t more) {
                      (im->water.xyz.cap + im->green.xyz.cap + im->squares.xyz.cap + im->lots.xyz.cap) * sizeof(double) +
                      (im->water.indices.cap + im->green.indices.cap + im->squares.indices.cap + im->lots.indices.cap) *
                          sizeof(uint32_t) +
-                     im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
+                     im->lost.cap * sizeof(*im->lost.data) + im->names.bytes + im->image_bytes +
                      im->records.list.cap * sizeof(*im->records.list.data);
     import_budget memory = { .memory = im->memory }, growth = { INFINITY, 0, (double)in->bytes };
     if (in->reader && in->reader->reads == NOC_READS_CITY) /* other readers see themselves to what files grow to */
@@ -215,7 +215,6 @@ void take_destroy(importer *im) {
     array_free(&im->buildings);
     map_free(&im->looks);
     map_free(&im->image_numbers);
-    array_free(&im->images);
-    array_free(&im->image_uses);
+    look_images_free(im);
     arena_free(&im->names);
 }

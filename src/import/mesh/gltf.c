@@ -139,6 +139,32 @@ static corners triangulate(const gltf *g, const double *index, size_t count, siz
     return out;
 }
 
+/* Does the primitive have a place in its material's image, and where are they? */
+static bool has_places(const gltf *g, const json_t *primitive, gltf_texture *texture, size_t *accessor) {
+    size_t index;
+    const json_t *m = g->images ? gltf_material_of(g, primitive, &index) : NULL;
+    return m && gltf_texture_of(g, m, texture) && gltf_texture_places(texture, primitive, accessor);
+}
+
+/* *uv: NULL where it has none. free() it. */
+static noc_status read_places(const gltf *g, const json_t *primitive, size_t vertices, const char *name, float **uv) {
+    gltf_texture texture;
+    size_t accessor, count;
+    double *places;
+    *uv = NULL;
+    if (!has_places(g, primitive, &texture, &accessor))
+        return NOC_OK;
+    noc_status status = gltf_read(g, accessor, "VEC2", 2, &places, &count);
+    if (status)
+        return status;
+    if (count != vertices)
+        geo_issue(g->issues, GEO_GUESSED, "texture coordinates that are not as many as the vertices", name);
+    else if (!(*uv = gltf_texture_uv(g, &texture, places, count)))
+        status = NOC_ERR_MEMORY;
+    free(places);
+    return status;
+}
+
 static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_frame *frame, const char *name) {
     size_t position, index_accessor, count, index_count = 0, mode = 4;
     if (json_object_get(primitive, "mode") && !gltf_index(primitive, "mode", &mode))
@@ -169,9 +195,12 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
         xyz[3 * i + 1] = 0 - q[2];
         xyz[3 * i + 2] = q[1];
     }
-    int material = status ? -1 : gltf_material(g, primitive);
-    if (!status && material < 0)
-        status = NOC_ERR_UNSUPPORTED; /* said by the scene */
+    float *uv = NULL;
+    int material = -1;
+    if (!status)
+        status = read_places(g, primitive, count, name, &uv);
+    if (!status)
+        status = gltf_material(g, primitive, uv != NULL, &material);
     corners c = { NULL, 0 };
     if (!status)
         status = g->place->points(g->place->ctx, xyz, count);
@@ -185,10 +214,12 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
                       .triangle_count = c.count / 3,
                       .indices = c.v,
                       .material = material,
+                      .uv = uv,
                       .name = name };
     if (!status && c.count && !import_triangles(g->scene, &mesh, g->issues))
         status = NOC_ERR_UNSUPPORTED;
     free(c.v);
+    free(uv);
     free(index);
     free(xyz);
     return status;
@@ -348,6 +379,9 @@ static double node_cost(const gltf *g, const json_t *node) {
             cost += gltf_cost(g, accessor, 3);
         if (gltf_index(primitive, "indices", &accessor))
             cost += gltf_cost(g, accessor, 1);
+        gltf_texture texture;
+        if (has_places(g, primitive, &texture, &accessor))
+            cost += gltf_cost(g, accessor, 2) * 1.5; /* as floats, too */
     }
     return cost;
 }
@@ -396,6 +430,8 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
                .scene = scene,
                .place = place,
                .issues = issues,
+               .images = params && params->textures && place->image,
+               .told = params && params->textures,
                .anywhere = params && params->allow_outside };
     char *data;
     size_t size, json_size = 0;
@@ -414,7 +450,7 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
     status = status ? status : parse(&g, json, json_size);
     status = status ? status : gltf_open_buffers(&g);
     if (!status) {
-        g.materials = noc_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
+        g.materials = noc_calloc(2 * json_array_size(json_object_get(g.root, "materials")) + 2, sizeof(*g.materials));
         status = g.materials ? add_scene(&g) : noc_no_memory(g.log, g.name);
     }
     gltf_close_buffers(&g);

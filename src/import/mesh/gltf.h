@@ -1,6 +1,6 @@
 /* gltf: glTF 2.0 and GLB. gltf_data.c finds the numbers, gltf_look.c makes materials, lights and cameras of them,
- * gltf.c walks the nodes. The specification meant is Khronos's glTF 2.0 (ISO/IEC 12113:2022) and its extensions by
- * name. */
+ * gltf_image.c finds images, gltf.c walks the nodes. The specification meant is Khronos's glTF 2.0 (ISO/IEC 12113:2022)
+ * and its extensions by name. */
 #ifndef NOC_IMPORT_GLTF_H
 #define NOC_IMPORT_GLTF_H
 
@@ -29,7 +29,10 @@ typedef struct gltf {
     size_t chunk_size;
     gltf_buffer *buffers;
     size_t buffer_count;
-    int *materials; /* index in the scene + 1, 0 if not made yet; the last is the default material */
+    bool images; /* are of use */
+    bool told;   /* what is not read of them is counted */
+    /* two each, without and with its image: index in the scene + 1, 0 if not made yet; the last is the default one */
+    int *materials;
 } gltf;
 
 /* Affine map of a node: columns x, y, z, then the translation. */
@@ -52,8 +55,29 @@ double gltf_cost(const gltf *g, size_t accessor, size_t width);
 /* An accessor's elements of `width` numbers each, as doubles (integers normalised where it says so). free() *out. */
 noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t width, double **out, size_t *count);
 
+/* The bytes of the view that an item names by "bufferView"; NULL where they are not there. */
+const unsigned char *gltf_view(const gltf *g, const json_t *item, size_t *size);
+/* What a data URI holds, free() it; NULL where *good is false, and where memory was refused. */
+unsigned char *gltf_decode_data(const char *uri, size_t *size, bool *good);
+void gltf_decode_percent(char *text); /* %20 and the like, in place */
+
+/* gltf_image.c: the texture of a base colour. */
+typedef struct gltf_texture {
+    size_t index, set; /* in "textures"; TEXCOORD_ of that number */
+    double offset[2], scale[2], rotation;
+} gltf_texture;
+bool gltf_texture_of(const gltf *g, const json_t *material, gltf_texture *out); /* false: it has none */
+bool gltf_texture_places(const gltf_texture *t, const json_t *primitive, size_t *accessor);
+/* Places of TEXCOORD_ as noc_mesh has them. NULL after reporting. */
+float *gltf_texture_uv(const gltf *g, const gltf_texture *t, const double *places, size_t count);
+/* That material of the scene looks like the texture's image, times the albedo. What is of no use is counted. */
+noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material, const float albedo[3],
+                             const char *name);
+
 /* gltf_look.c */
-int gltf_material(gltf *g, const json_t *primitive); /* index in the scene, -1 after reporting */
+/* Of a primitive whose vertices have a place in the material's image, or have none. */
+noc_status gltf_material(gltf *g, const json_t *primitive, bool placed, int *index);
+const json_t *gltf_material_of(const gltf *g, const json_t *primitive, size_t *index); /* NULL: the default one */
 noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, const char *name);
 noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, const char *name);
 /* A point of glTF's (y up) in the scene's frame. */

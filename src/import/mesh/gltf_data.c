@@ -88,8 +88,7 @@ static int hex(char c) {
     return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;
 }
 
-/* %20 and the like, in place. */
-static void decode_percent(char *text) {
+void gltf_decode_percent(char *text) {
     char *to = text;
     for (const char *p = text; *p; p++) {
         bool coded = *p == '%' && hex(p[1]) >= 0 && hex(p[2]) >= 0;
@@ -105,7 +104,7 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
     size_t size;
     if (!name)
         return noc_no_memory(g->log, g->name);
-    decode_percent(name);
+    gltf_decode_percent(name);
     FILE *f = import_open_named(g->folder, name, g->anywhere, &size, &why);
     noc_status status = NOC_OK;
     if (!f && !why) {
@@ -126,16 +125,27 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
     return status;
 }
 
-static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_buffer *b) {
+unsigned char *gltf_decode_data(const char *uri, size_t *size, bool *good) {
     const char *comma = strchr(uri, ',');
-    if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7))
-        return gltf_error(g, "buffer %zu is a data URI that is not base64", index);
+    *good = comma && comma - uri >= 7 && !strncmp(comma - 7, ";base64", 7);
+    if (!*good)
+        return NULL;
     size_t digits = strcspn(comma + 1, "=");
-    b->owned = noc_alloc_large(digits / 4 * 3 + digits % 4 * 3 / 4, 1);
-    if (!b->owned)
-        return noc_no_memory(g->log, g->name);
-    b->data = b->owned;
-    return decode_base64(comma + 1, b->owned, &b->size) ? NOC_OK : gltf_error(g, "buffer %zu is not base64", index);
+    unsigned char *data = noc_alloc_large(digits / 4 * 3 + digits % 4 * 3 / 4, 1);
+    *good = !data || decode_base64(comma + 1, data, size);
+    if (!*good) {
+        free(data);
+        return NULL;
+    }
+    return data;
+}
+
+static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_buffer *b) {
+    bool good;
+    b->data = b->owned = gltf_decode_data(uri, &b->size, &good);
+    if (!good)
+        return gltf_error(g, "buffer %zu is a data URI that is not base64", index);
+    return b->data ? NOC_OK : noc_no_memory(g->log, g->name);
 }
 
 noc_status gltf_open_buffers(gltf *g) {
@@ -233,6 +243,12 @@ static const unsigned char *view_data(const gltf *g, const json_t *from, size_t 
     if (!inside || !b->data || length - offset < element || (length - offset - element) / *stride < count - 1)
         return NULL;
     return b->data + start + offset;
+}
+
+const unsigned char *gltf_view(const gltf *g, const json_t *item, size_t *size) {
+    size_t index, stride;
+    const json_t *view = gltf_index(item, "bufferView", &index) ? gltf_item(g, "bufferViews", index) : NULL;
+    return view && gltf_index(view, "byteLength", size) && *size ? view_data(g, item, *size, 1, &stride) : NULL;
 }
 
 static noc_status read_sparse(const gltf *g, const json_t *sparse, size_t accessor, component c, bool normalised,

@@ -1,8 +1,8 @@
 /* What shines and what is seen: materials, KHR_lights_punctual, cameras.
  *
  * Units: emissiveFactor times emissiveStrength is a radiance of cd/m2, lights are in cd, as the specifications have it.
- * Colours are linear already. Textures are not read; what they would have been multiplied with stands in for them where
- * that makes sense, and the report says so. */
+ * Colours are linear already. Of textures that of the base colour is read (gltf_image.c). Where one is not, what it
+ * would have been multiplied with stands in for it where that makes sense, and the report says so. */
 #include "import/mesh/gltf.h"
 
 #include <math.h>
@@ -13,20 +13,20 @@
 
 static double limited(double x, double lo, double hi) { return x >= lo ? NOC_MIN(x, hi) : lo; } /* NaN becomes lo */
 
-static bool no_textures(const gltf *g, const json_t *pbr, const json_t *m, const char *name, noc_material *out) {
-    bool base = json_object_get(pbr, "baseColorTexture") != NULL;
-    if (base || json_object_get(pbr, "metallicRoughnessTexture") || json_object_get(m, "emissiveTexture"))
-        geo_issue(g->issues, GEO_GUESSED, "textures are not read, plain material", name);
+static void no_textures(const gltf *g, const json_t *pbr, const json_t *m, const char *name, noc_material *out) {
+    if (json_object_get(pbr, "metallicRoughnessTexture") || json_object_get(m, "emissiveTexture"))
+        geo_issue(g->issues, GEO_GUESSED, "texture of roughness, metalness or emission, which is not read", name);
     if (json_object_get(m, "emissiveTexture") &&
         (out->emission[0] > 0 || out->emission[1] > 0 || out->emission[2] > 0)) {
         /* it says where the surface shines, most often on little of it */
         memset(out->emission, 0, sizeof(out->emission));
         geo_issue(g->issues, GEO_SKIPPED, "emission by a texture, left dark", name);
     }
-    return base;
 }
 
-static noc_material convert_material(const gltf *g, const json_t *m, const char *name) {
+/* Without its texture. in_image: what the texture is to be multiplied with. */
+static noc_material convert_material(const gltf *g, const json_t *m, const char *name, bool textured,
+                                     float in_image[3]) {
     noc_material out = noc_class_material(NOC_CLASS_OTHER);
     const json_t *pbr = json_object_get(m, "pbrMetallicRoughness");
     const char *mode = json_string_value(json_object_get(m, "alphaMode"));
@@ -36,11 +36,12 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     double strength = gltf_number(gltf_extension(m, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     for (int k = 0; k < 3; k++)
         out.emission[k] = (float)limited(emission[k] * strength, 0, 1e12);
-    bool textured = no_textures(g, pbr, m, name, &out),
-         mapped = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
+    bool mapped = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
+    no_textures(g, pbr, m, name, &out);
     double metallic = mapped ? 0 : limited(gltf_number(pbr, "metallicFactor", 1), 0, 1);
     double roughness = mapped ? 0.8 : limited(gltf_number(pbr, "roughnessFactor", 1), 0, 1), luminance = 0;
     for (int k = 0; k < 3; k++) {
+        in_image[k] = (float)(limited(base[k], 0, 1) * (1 - metallic));
         base[k] = limited(base[k], 0, 1) * (textured ? UNKNOWN_TEXTURE : 1);
         luminance += base[k] * (k == 0 ? 0.2126 : k == 1 ? 0.7152 : 0.0722);
     }
@@ -56,22 +57,43 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     return out;
 }
 
-int gltf_material(gltf *g, const json_t *primitive) {
-    size_t count = json_array_size(json_object_get(g->root, "materials")), index = count;
-    const json_t *m = gltf_index(primitive, "material", &index) ? gltf_item(g, "materials", index) : NULL;
+const json_t *gltf_material_of(const gltf *g, const json_t *primitive, size_t *index) {
+    const json_t *m = gltf_index(primitive, "material", index) ? gltf_item(g, "materials", *index) : NULL;
+    if (!m)
+        *index = json_array_size(json_object_get(g->root, "materials"));
+    return m;
+}
+
+noc_status gltf_material(gltf *g, const json_t *primitive, bool placed, int *index) {
+    size_t number;
+    const json_t *m = gltf_material_of(g, primitive, &number);
     if (!m && json_object_get(primitive, "material"))
         geo_issue(g->issues, GEO_GUESSED, "material that is not there, the default one instead", "primitive");
-    int *have = &g->materials[m ? index : count];
+    int *have = &g->materials[2 * number + placed];
+    noc_status status = NOC_OK;
     if (!*have) {
         const char *name = json_string_value(json_object_get(m, "name"));
-        char number[32];
-        snprintf(number, sizeof(number), "material %zu", index);
+        char told[32];
+        snprintf(told, sizeof(told), "material %zu", number);
+        name = name ? name : told;
         noc_material converted = noc_class_material(NOC_CLASS_OTHER);
+        gltf_texture texture;
+        float in_image[3];
+        bool textured = m && gltf_texture_of(g, m, &texture);
         if (m)
-            converted = convert_material(g, m, name ? name : number);
+            converted = convert_material(g, m, name, textured, in_image);
+        if (textured && !placed && g->told)
+            geo_issue(g->issues, GEO_GUESSED,
+                      g->images ? "texture without places in it, plain material"
+                                : "textures are not read, plain material",
+                      name);
         *have = noc_scene_add_material(g->scene, &converted) + 1;
+        status = !*have   ? NOC_ERR_UNSUPPORTED /* said by the scene */
+                 : placed ? gltf_texture_give(g, &texture, *have - 1, in_image, name)
+                          : NOC_OK;
     }
-    return *have - 1;
+    *index = *have - 1;
+    return status;
 }
 
 noc_status gltf_place(const gltf *g, const double yup[3], double out[3]) {

@@ -4,7 +4,8 @@
  * most programs write, and noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the
  * radiance in cd/m2, Ks with illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its
  * Blinn-Phong exponent n, turned into the GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37
- * ff.). Textures are not read.
+ * ff.), map_Kd an image of the diffuse reflectance, times Kd. Assimp hears nothing of that one, which obj_library.c
+ * finds; other textures are not read.
  *
  * One odd number makes Assimp refuse a file whole, so it sees a text that obj_offset.c, obj_faces.c and obj_library.c
  * made plain. */
@@ -87,6 +88,7 @@ typedef struct library {
     size_t size, faces;
     char *missing; /* first library that could not be opened, and why */
     bool refused;  /* memory was, to what Assimp would have read */
+    obj_images images;
     geo_issues *issues;
 } library;
 
@@ -126,7 +128,7 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         o = (open_file){ .data = lib->data, .size = lib->size };
     } else {
         const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
-        o.data = obj_open_library(&lib->folder, relative, &o.size, lib->issues);
+        o.data = obj_open_library(&lib->folder, relative, &o.size, NULL, lib->issues);
         o.owned = true;
         lib->refused = lib->refused || lib->folder.refused;
         if (!o.data && !lib->missing && !lib->refused) {
@@ -230,20 +232,26 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
 
 typedef struct mesh_target {
     const mesh_parts *parts;
+    const obj_images *images;
     const double *offset; /* of the coordinates as Assimp has them, in the file's axes */
     bool z_up;
     obj_spread *spread;
 } mesh_target;
 
 /* Puts the polygons' triangles behind the others; false where there is no memory. */
-static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_t *vertices) {
+static bool join_polygons(cut_mesh *cut, double **xyz, float **uv, uint32_t **indices, size_t *vertices) {
     size_t more = cut->extra.xyz.len / 3, corners = cut->extra.indices.len;
     double *x = more ? noc_realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
     *xyz = x ? x : *xyz;
     uint32_t *v = x ? noc_realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
     *indices = v ? v : *indices;
-    if (!more || !v)
+    float *places = v && *uv ? noc_realloc(*uv, (*vertices + more) * 2 * sizeof(*places)) : NULL;
+    if (!more || !v || (*uv && !places))
         return !more;
+    if (places) {
+        memcpy(places + 2 * *vertices, cut->extra.uv.data, 2 * more * sizeof(*places));
+        *uv = places;
+    }
     memcpy(x + 3 * *vertices, cut->extra.xyz.data, 3 * more * sizeof(*x));
     for (size_t i = 0; i < corners; i++)
         v[3 * cut->triangle_count + i] = (uint32_t)*vertices + cut->extra.indices.data[i];
@@ -252,13 +260,22 @@ static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_
     return true;
 }
 
-static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material) {
+/* image: NULL: none, or the mesh has no places in it. */
+static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material, const obj_image *image) {
     size_t vertices = m->mNumVertices;
     double *xyz = noc_alloc_large(vertices * 3, sizeof(*xyz));
     uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 6, sizeof(*indices));
+    float *uv = image ? noc_alloc_large(vertices * 2, sizeof(*uv)) : NULL;
     const char *name = m->mName.length ? m->mName.data : NULL;
-    cut_mesh cut = { .xyz = xyz, .indices = indices, .issues = to->parts->issues, .name = name ? name : "unnamed" };
-    bool memory = xyz && indices;
+    cut_mesh cut = {
+        .xyz = xyz, .uv = uv, .indices = indices, .issues = to->parts->issues, .name = name ? name : "unnamed"
+    };
+    bool memory = xyz && indices && (uv || !image);
+    for (size_t i = 0; i < vertices && memory && uv; i++) {
+        const struct aiVector3D *at = &m->mTextureCoords[0][i];
+        uv[2 * i] = (float)(at->x * image->scale[0] + image->offset[0]);
+        uv[2 * i + 1] = (float)(at->y * image->scale[1] + image->offset[1]);
+    }
     for (size_t i = 0; i < vertices && memory; i++) {
         const struct aiVector3D *v = &m->mVertices[i];
         double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
@@ -268,7 +285,7 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
     }
     for (size_t i = 0; i < m->mNumFaces && memory; i++)
         cut_face(&cut, m->mFaces[i].mIndices, m->mFaces[i].mNumIndices);
-    memory = memory && !cut.extra.no_memory && join_polygons(&cut, &xyz, &indices, &vertices);
+    memory = memory && !cut.extra.no_memory && join_polygons(&cut, &xyz, &uv, &indices, &vertices);
     if (memory)
         obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
     noc_mesh mesh = { .vertex_count = vertices,
@@ -276,33 +293,53 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
                       .triangle_count = cut.triangle_count,
                       .indices = indices,
                       .material = material,
+                      .uv = uv,
                       .name = name };
     noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz) : noc_no_memory(to->parts->log, cut.name);
     geo_triangles_free(&cut.extra);
     free(xyz);
+    free(uv);
     free(indices);
     return status;
 }
 
+/* The material of so many, without or with its image. */
+static noc_status add_material(const mesh_target *to, const struct aiMaterial *from, const char *name,
+                               const obj_image *texture, int *material) {
+    noc_material converted = convert_material(from, name, to->parts->issues);
+    mesh_image image = { .name = texture ? texture->name : NULL,
+                         .wrap = texture && texture->clamp ? NOC_WRAP_CLAMP : NOC_WRAP_REPEAT };
+    bool black = true; /* as some programs write it beside a texture */
+    for (int k = 0; k < 3; k++)
+        black = black && converted.albedo[k] == 0;
+    for (int k = 0; k < 3; k++)
+        image.albedo[k] = black ? 1 : converted.albedo[k];
+    return to->parts->material(to->parts->ctx, &converted, texture ? &image : NULL, material);
+}
+
 static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
-    int *materials = noc_alloc((from->mNumMaterials + 1) * sizeof(*materials));
+    int *materials = noc_alloc(((size_t)from->mNumMaterials + 1) * 2 * sizeof(*materials)); /* see add_material */
     if (!materials)
         return noc_no_memory(to->parts->log, "OBJ");
     noc_status status = NOC_OK;
-    memset(materials, 0xff, (from->mNumMaterials + 1) * sizeof(*materials));
+    memset(materials, 0xff, ((size_t)from->mNumMaterials + 1) * 2 * sizeof(*materials));
     for (unsigned i = 0; i < from->mNumMeshes && !status; i++) {
         const struct aiMesh *m = from->mMeshes[i];
         if (!m->mVertices || m->mMaterialIndex >= from->mNumMaterials)
             continue;
-        int *material = &materials[m->mMaterialIndex];
-        if (*material < 0) {
-            struct aiString name = { 0 };
-            aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
-            noc_material converted =
-                convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->parts->issues);
-            *material = to->parts->material(to->parts->ctx, &converted);
+        struct aiString name = { 0 };
+        uint64_t number;
+        aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
+        const obj_image *image = map_get(&to->images->of, name.data, &number) ? &to->images->list.data[number] : NULL;
+        if (image && !m->mTextureCoords[0]) {
+            geo_issue(to->parts->issues, GEO_GUESSED, "texture without places in it, plain material", name.data);
+            image = NULL;
         }
-        status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(to, m, *material);
+        int *material = &materials[2 * (size_t)m->mMaterialIndex + (image != NULL)];
+        if (*material < 0)
+            status = add_material(to, from->mMaterials[m->mMaterialIndex], name.data, image, material);
+        if (!status)
+            status = add_mesh(to, m, *material, image);
     }
     free(materials);
     return status;
@@ -314,7 +351,7 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
                                aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                   aiComponent_TEXCOORDS | aiComponent_TEXTURES);
+                                   (lib->images.list.len ? 0 : aiComponent_TEXCOORDS) | aiComponent_TEXTURES);
     const struct aiScene *from = aiImportFileExWithProperties(lib->main_name,
                                                               aiProcess_SortByPType | aiProcess_RemoveComponent |
                                                                   aiProcess_JoinIdenticalVertices,
@@ -337,15 +374,19 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     return status;
 }
 
-static noc_status plain_text(library *lib, double offset[3], const char *name, noc_log *log) {
-    obj_numbers bad = { 0 };
+static void plain_lines(library *lib) {
     if (lib->size >= 3 && !memcmp(lib->data, BOM, 3))
         memset(lib->data, ' ', 3);
     if (!memchr(lib->data, '\n', lib->size)) /* lines that end as they did on old Macs */
         for (size_t i = 0; i < lib->size; i++)
             lib->data[i] = lib->data[i] == '\r' ? '\n' : lib->data[i];
-    noc_status status = obj_plain_vertices(&lib->data, &lib->size, offset, &bad, lib->issues, name, log);
-    lib->faces = status ? 0 : obj_plain_faces(lib->data, lib->size, &bad, lib->issues);
+}
+
+static noc_status plain_text(library *lib, double offset[3], const char *name, noc_log *log) {
+    obj_numbers bad = { 0 };
+    bool places = lib->images.list.len > 0;
+    noc_status status = obj_plain_vertices(&lib->data, &lib->size, places, offset, &bad, lib->issues, name, log);
+    lib->faces = status ? 0 : obj_plain_faces(lib->data, lib->size, places, &bad, lib->issues);
     array_free(&bad);
     return status;
 }
@@ -355,28 +396,34 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     *format = "OBJ";
     library lib = { .issues = parts->issues };
     double offset[3];
-    noc_status status = noc_stream_read_all(stream, parts->log, &lib.data, &lib.size);
-    if (!status)
-        status = plain_text(&lib, offset, noc_stream_name(stream), parts->log);
-    if (status || !lib.faces) { /* Assimp refuses a file without faces */
-        free(lib.data);
-        return status;
-    }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
+    const char *name = noc_stream_name(stream);
+    bool textures = !params || params->textures;
+    noc_status status = noc_stream_read_all(stream, parts->log, &lib.data, &lib.size);
+    if (status)
+        return status;
     char *folder = noc_strndup(path, (size_t)(base - path));
-    lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
+    lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside, .textures = textures };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
-    const mesh_target to = {
-        .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread
-    };
-    status = folder && lib.main_name ? obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream),
-                                                           parts->issues, noc_stream_name(stream), parts->log)
-                                     : noc_no_memory(parts->log, path);
+    const mesh_target to = { .parts = parts,
+                             .images = &lib.images,
+                             .offset = offset,
+                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
+                             .spread = &spread };
+    plain_lines(&lib);
+    status = folder && lib.main_name
+                 ? obj_plain_materials(lib.data, lib.size, &lib.folder, textures ? &lib.images : NULL,
+                                       noc_stream_budget(stream), parts->issues, name, parts->log)
+                 : noc_no_memory(parts->log, path);
     if (!status)
+        status = plain_text(&lib, offset, name, parts->log);
+    if (!status && lib.faces) { /* Assimp refuses a file without any */
         status = read_obj(path, &lib, &to);
-    if (!status)
-        obj_check_up(&spread, to.z_up, path, parts->log);
+        if (!status)
+            obj_check_up(&spread, to.z_up, path, parts->log);
+    }
+    obj_images_free(&lib.images);
     free(folder);
     free(lib.main_name);
     free(lib.missing);

@@ -91,9 +91,89 @@ static bool has_numbers(const char *p, const char *end, int count) {
     return true;
 }
 
-static void plain_statements(char *data, size_t size, const char *name, geo_issues *issues) {
+void obj_images_free(obj_images *images) {
+    for (size_t i = 0; i < images->list.len; i++)
+        free(images->list.data[i].name);
+    array_free(&images->list);
+    map_free(&images->of);
+}
+
+static const char *word_end(const char *p, const char *end) {
+    while (p < end && !strchr(" \t\r", *p))
+        p++;
+    return p;
+}
+
+static const char *next_word(const char *p, const char *end) {
+    while (p < end && strchr(" \t\r", *p) && *p)
+        p++;
+    return p;
+}
+
+/* The options before the name of an image (MTL, "Options for texture map statements"); returns where that begins. */
+static const char *texture_options(const char *p, const char *end, obj_image *image) {
+    static const struct {
+        const char *word;
+        int arguments; /* -1: up to three numbers */
+    } known[] = { { "-blendu", 1 }, { "-blendv", 1 },  { "-bm", 1 },  { "-boost", 1 }, { "-cc", 1 },
+                  { "-clamp", 1 },  { "-imfchan", 1 }, { "-mm", 2 },  { "-o", -1 },    { "-s", -1 },
+                  { "-t", -1 },     { "-texres", 1 },  { "-type", 1 } };
+    for (p = next_word(p, end); p < end && *p == '-';) {
+        const char *word = p, *next = word_end(p, end);
+        size_t n = (size_t)(next - word), k = 0;
+        while (k < NOC_COUNT(known) && (strlen(known[k].word) != n || memcmp(known[k].word, word, n)))
+            k++;
+        if (k == NOC_COUNT(known))
+            return p; /* a name that begins so */
+        p = next_word(next, end);
+        for (int i = 0; i < 3 && known[k].arguments < 0; i++) {
+            double x;
+            const char *behind = noc_scan_double(p, word_end(p, end), &x);
+            if (!behind || behind != word_end(p, end) || !(fabs(x) < 1e6))
+                break;
+            if (i < 2 && (word[1] == 's' || word[1] == 'o'))
+                (word[1] == 's' ? image->scale : image->offset)[i] = x;
+            p = next_word(behind, end);
+        }
+        for (int i = 0; i < known[k].arguments; i++) {
+            if (!strcmp(known[k].word, "-clamp"))
+                image->clamp = (size_t)(word_end(p, end) - p) == 2 && !memcmp(p, "on", 2);
+            p = next_word(word_end(p, end), end);
+        }
+    }
+    return p;
+}
+
+/* What stands behind a keyword, without blanks and quotes around it. NULL: no memory. */
+static char *text_behind(const char *p, const char *end) {
+    p = next_word(p, end);
+    while (end > p && strchr(" \t\r", end[-1]))
+        end--;
+    bool quoted = end - p >= 2 && *p == '"' && end[-1] == '"';
+    return noc_strndup(p + quoted, (size_t)(end - p) - 2 * quoted);
+}
+
+/* false: no memory. */
+static bool add_image(obj_images *images, const char *material, const char *p, const char *end) {
+    obj_image image = { .scale = { 1, 1 } };
+    image.name = text_behind(texture_options(p, end, &image), end);
+    for (char *c = image.name; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    bool named = image.name && *image.name;
+    if (named && map_put(&images->of, material, images->list.len, NULL) && array_push(&images->list, image))
+        return true;
+    bool memory = image.name && !named;
+    free(image.name);
+    return memory;
+}
+
+/* false: no memory. */
+static bool plain_statements(char *data, size_t size, const char *name, obj_images *images, bool textures,
+                             geo_issues *issues) {
     size_t line = 1;
-    for (char *p = data, *stop = data + size, *end; p < stop; p = end + (end < stop), line++) {
+    char *material = NULL;
+    bool memory = true;
+    for (char *p = data, *stop = data + size, *end; p < stop && memory; p = end + (end < stop), line++) {
         char *newline = memchr(p, '\n', (size_t)(stop - p)), *word = p, *behind, id[200];
         end = newline ? newline : stop;
         while (word < end && (*word == ' ' || *word == '\t'))
@@ -103,18 +183,27 @@ static void plain_statements(char *data, size_t size, const char *name, geo_issu
         size_t n = (size_t)(behind - word);
         int numbers = numbers_of(word, n);
         bool texture = (n > 4 && !memcmp(word, "map_", 4)) || (n == 4 && !memcmp(word, "bump", 4));
+        bool diffuse = n == 6 && !memcmp(word, "map_Kd", 6);
+        if (n == 6 && !memcmp(word, "newmtl", 6) && images) {
+            free(material);
+            memory = (material = text_behind(behind, end)) != NULL;
+        }
+        if (diffuse && images && material)
+            memory = add_image(images, material, behind, end);
         if (!n || *word == '#' || (numbers >= 0 && has_numbers(behind, end, numbers)))
             continue;
         snprintf(id, sizeof(id), "%.150s line %zu", name, line);
-        if (texture)
-            geo_issue(issues, GEO_GUESSED, "textures are not read, plain material", id);
+        if (texture && !diffuse && textures)
+            geo_issue(issues, GEO_GUESSED, "texture of another thing than the diffuse colour, which is not read", id);
         else if (numbers > 0)
             geo_issue(issues, GEO_SKIPPED, "material statement with a number that is none", id);
         memset(p, ' ', (size_t)(end - p));
     }
+    free(material);
+    return memory;
 }
 
-char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_issues *issues) {
+char *obj_open_library(obj_folder *folder, const char *name, size_t *size, obj_images *images, geo_issues *issues) {
     char *trimmed = noc_strdup(name);
     folder->refused = folder->refused || !trimmed;
     if (!trimmed)
@@ -129,8 +218,11 @@ char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_i
         data = names ? find_all(folder, names, size) : NULL;
         free(names);
     }
-    if (data)
-        plain_statements(data, *size, begin, issues);
+    if (data && !plain_statements(data, *size, begin, images, folder->textures, issues)) {
+        folder->refused = true;
+        free(data);
+        data = NULL;
+    }
     free(trimmed);
     return data;
 }

@@ -34,9 +34,10 @@ static char *line_end(char *p, char *stop) {
 static char *text_of(const statement *s) { return noc_strndup(s->begin, (size_t)(s->end - s->begin)); }
 
 /* Adds the materials that a library defines. false where there is no memory. */
-static bool add_library(obj_folder *folder, const char *name, import_budget *budget, noc_map *defined) {
+static bool add_library(obj_folder *folder, const char *name, obj_images *images, import_budget *budget,
+                        noc_map *defined) {
     size_t size;
-    char *data = obj_open_library(folder, name, &size, NULL);
+    char *data = obj_open_library(folder, name, &size, images, NULL);
     bool memory = !folder->refused;
     if (data)
         budget->stored += (double)size;
@@ -53,8 +54,8 @@ static bool add_library(obj_folder *folder, const char *name, import_budget *bud
     return memory;
 }
 
-noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, geo_issues *issues,
-                               const char *name, noc_log *log) {
+noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, obj_images *images, import_budget *budget,
+                               geo_issues *issues, const char *name, noc_log *log) {
     noc_map defined = { 0 }, libraries = { 0 };
     size_t faces = 0, vertices = 0, undefined = 0;
     char unknown = '?'; /* a name that no library defines */
@@ -64,12 +65,12 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
         statement s;
         end = line_end(p, stop);
         faces += is_a(p, end, "f", &s);
-        vertices += is_a(p, end, "v", &s);
+        vertices += is_a(p, end, "v", &s) || (images && is_a(p, end, "vt", &s));
         if (is_a(p, end, "mtllib", &s)) {
             char *library = text_of(&s);
             bool fresh;
             memory = library && map_put(&libraries, library, 1, &fresh) &&
-                     (!fresh || add_library(folder, library, budget, &defined));
+                     (!fresh || add_library(folder, library, images, budget, &defined));
             if (memory && !fresh) /* Assimp would read all of it again */
                 memset(p, ' ', (size_t)(end - p));
             free(library);

@@ -11,13 +11,20 @@
 #define SAMPLE 1023 /* vertices that are looked at: their median, so that a stray one at zero does not decide */
 #define MOST 1e12   /* m; what the fixed decimals below hold */
 #define MOST_FLOAT 1e38
+#define MOST_PLACE 1e6 /* noc_mesh.uv */
 #define NUMBER_SIZE 24 /* "-1000000000000.000000" and a blank */
 
 #define MOST_NUMBERS 7 /* in a vertex: place, weight or colour, and one too many */
 
+/* Behind a keyword. */
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\\'; }
+
 static bool is_vertex(const char *line, const char *end) {
-    return end - line >= 2 && line[0] == 'v' &&
-           (line[1] == ' ' || line[1] == '\t' || line[1] == '\r' || line[1] == '\\');
+    return end - line >= 2 && line[0] == 'v' && is_blank(line[1]);
+}
+
+static bool is_place(const char *line, const char *end) {
+    return end - line >= 3 && line[0] == 'v' && line[1] == 't' && is_blank(line[2]);
 }
 
 /* A number as every parser reads it: no sign but -, a digit first. */
@@ -28,8 +35,8 @@ static bool is_plain(const char *p, const char *end) {
     return p < end && *p >= '0' && *p <= '9';
 }
 
-/* The place of a vertex; false, and zeros, where it has none. *plain: the text says just that, in plain numbers. */
-static bool parse_vertex(const char *line, const char *end, double xyz[3], bool *plain) {
+/* Numbers behind a keyword of so many letters; how many. *plain: the text says just that, in plain numbers. */
+static int parse_numbers(const char *line, const char *end, int keyword, double v[MOST_NUMBERS], bool *plain) {
     char joined[512];
     size_t length = (size_t)(end - line);
     *plain = *line == 'v' && !memchr(line, '\\', length);
@@ -39,8 +46,7 @@ static bool parse_vertex(const char *line, const char *end, double xyz[3], bool 
         line = joined;
         end = joined + length;
     }
-    const char *remark = memchr(line, '#', (size_t)(end - line)), *p = line + 1, *next;
-    double v[MOST_NUMBERS];
+    const char *remark = memchr(line, '#', (size_t)(end - line)), *p = line + keyword, *next;
     int n = 0;
     for (end = remark ? remark : end; n < MOST_NUMBERS && (next = noc_scan_double(p, end, &v[n])); p = next) {
         *plain = *plain && is_plain(p, end) && isfinite(v[n]);
@@ -48,14 +54,33 @@ static bool parse_vertex(const char *line, const char *end, double xyz[3], bool 
     }
     while (p < end && (*p == ' ' || *p == '\t' || *p == '\r'))
         p++;
+    *plain = *plain && p == end && !remark;
+    return n;
+}
+
+/* The place of a vertex; false, and zeros, where it has none. */
+static bool parse_vertex(const char *line, const char *end, double xyz[3], bool *plain) {
+    double v[MOST_NUMBERS];
+    int n = parse_numbers(line, end, 1, v, plain);
     double w = n == 4 ? v[3] : 1; /* a homogeneous vertex; five numbers and more are a colour behind the place */
     bool good = n >= 3 && w != 0;
-    *plain = *plain && (n == 3 || n == 6) && p == end && !remark;
+    *plain = *plain && (n == 3 || n == 6);
     for (int k = 0; k < 3 && good; k++)
         good = fabs(xyz[k] = v[k] / w) < MOST_FLOAT; /* false for NaN, too */
     if (!good)
         memset(xyz, 0, 3 * sizeof(*xyz));
     *plain = *plain && good;
+    return good;
+}
+
+/* The same of a place in a texture. One number is that of a texture along a line. */
+static bool parse_place(const char *line, const char *end, double uv[2], bool *plain) {
+    double v[MOST_NUMBERS] = { 0 };
+    int n = parse_numbers(line, end, 2, v, plain);
+    bool good = n >= 1 && n <= 3 && fabs(v[0]) < MOST_PLACE && fabs(v[1]) < MOST_PLACE; /* false for NaN, too */
+    uv[0] = good ? v[0] : 0;
+    uv[1] = good && n > 1 ? v[1] : 0;
+    *plain = *plain && good && n >= 2;
     return good;
 }
 
@@ -74,7 +99,7 @@ static int by_value(const void *a, const void *b) {
 }
 
 /* Finds the offset, and whether all vertices are plain already. */
-static void find_offset(const char *data, size_t size, double offset[3], bool *plain) {
+static void find_offset(const char *data, size_t size, bool places, double offset[3], bool *plain) {
     double sample[3][SAMPLE];
     size_t n = 0;
     *plain = true;
@@ -82,6 +107,10 @@ static void find_offset(const char *data, size_t size, double offset[3], bool *p
         const char *line = next_statement(p, stop, &end, &next);
         double xyz[3];
         bool this_plain;
+        if (places && is_place(line, end)) {
+            parse_place(line, end, xyz, &this_plain);
+            *plain = *plain && this_plain && line == p;
+        }
         if (!is_vertex(line, end))
             continue;
         bool good = parse_vertex(line, end, xyz, &this_plain);
@@ -148,11 +177,11 @@ static char *write_place(char *to, const double xyz[3], const double offset[3]) 
     return to;
 }
 
-noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_numbers *bad, geo_issues *issues,
-                              const char *name, noc_log *log) {
+noc_status obj_plain_vertices(char **data, size_t *size, bool places, double offset[3], obj_numbers *bad,
+                              geo_issues *issues, const char *name, noc_log *log) {
     memset(offset, 0, 3 * sizeof(*offset));
     bool plain;
-    find_offset(*data, *size, offset, &plain);
+    find_offset(*data, *size, places, offset, &plain);
     if (plain && offset[0] == 0 && offset[1] == 0 && offset[2] == 0)
         return NOC_OK;
     text_buffer out = { 0 };
@@ -162,7 +191,16 @@ noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_n
     for (const char *p = *data, *stop = *data + *size, *end, *next; p < stop && memory; p = next) {
         const char *line = next_statement(p, stop, &end, &next), *from = line;
         memory = reserve(&out, (size_t)(next - line) + 3 * NUMBER_SIZE + 2);
-        if (memory && is_vertex(line, end)) {
+        bool rewritten = memory && places && is_place(line, end);
+        if (rewritten) {
+            double uv[2];
+            if (!parse_place(line, end, uv, &plain)) {
+                char id[32];
+                snprintf(id, sizeof(id), "line %zu", line_number);
+                geo_issue(issues, GEO_GUESSED, "texture coordinates that are no numbers, taken as 0", id);
+            }
+            out.size += (size_t)noc_snprintf(out.data + out.size, 3 * NUMBER_SIZE, "vt %.9g %.9g", uv[0], uv[1]);
+        } else if (memory && is_vertex(line, end)) {
             double xyz[3];
             number++;
             if (!parse_vertex(line, end, xyz, &plain)) {
@@ -173,10 +211,11 @@ noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_n
             }
             out.data[out.size] = 'v';
             out.size = (size_t)(write_place(out.data + out.size + 1, xyz, offset) - out.data);
-            for (from = line; from < end; from++) /* joined lines stay that many */
-                if (*from == '\n')
-                    out.data[out.size++] = '\n';
+            rewritten = true;
         }
+        for (; rewritten && from < end; from++) /* joined lines stay that many */
+            if (*from == '\n')
+                out.data[out.size++] = '\n';
         for (const char *c = p; c < next; c++)
             line_number += *c == '\n';
         if (memory) {

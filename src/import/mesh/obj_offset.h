@@ -11,8 +11,8 @@ typedef NOC_ARRAY(long long) obj_numbers; /* of vertices, from 1, ascending */
  * remarks left out. What is none of a float's numbers is counted in issues and listed in bad; the others keep their
  * numbers. Whole metres are taken off where the vertices lie far from zero: offset[k] is to be added to the coordinates
  * that are read from the text. *data (from malloc, with a 0 behind it) is replaced where that needs it. NOC_ERR_MEMORY
- * is reported. */
-noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_numbers *bad, geo_issues *issues,
-                              const char *name, noc_log *log);
+ * is reported. places: those in textures (vt) become two plain numbers each, too. */
+noc_status obj_plain_vertices(char **data, size_t *size, bool places, double offset[3], obj_numbers *bad,
+                              geo_issues *issues, const char *name, noc_log *log);
 
 #endif

@@ -262,13 +262,14 @@ static noc_status hand_over(ply *p, const mesh_parts *parts) {
                    (size_t)p->bad_faces, "face");
     if (!p->indices.len)
         return NOC_OK;
-    int material = parts->material(parts->ctx, &plain);
+    int material = -1;
+    noc_status status = parts->material(parts->ctx, &plain, NULL, &material);
     noc_mesh mesh = { .vertex_count = p->xyz.len / 3,
                       .positions = p->xyz.data,
                       .triangle_count = p->indices.len / 3,
                       .indices = p->indices.data,
                       .material = material };
-    return material < 0 ? NOC_ERR_ARGUMENT : parts->mesh(parts->ctx, &mesh, p->xyz.data);
+    return status ? status : parts->mesh(parts->ctx, &mesh, p->xyz.data);
 }
 
 static noc_status read_parts(noc_stream *stream, const mesh_parts *parts, const char **format) {

@@ -41,10 +41,15 @@ static bool cut_quad(cut_mesh *m, const unsigned *v) {
 
 static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
     double *ring = noc_alloc(3 * count * sizeof(*ring)), lo[3], hi[3], size = 0;
-    if (!ring) {
+    float *uv = m->uv ? noc_alloc(2 * count * sizeof(*uv)) : NULL;
+    if (!ring || (m->uv && !uv)) {
         m->extra.no_memory = true;
+        free(ring);
+        free(uv);
         return;
     }
+    for (size_t i = 0; i < count && uv; i++)
+        memcpy(uv + 2 * i, m->uv + 2 * (size_t)corner[i], 2 * sizeof(*uv));
     bool finite = true;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
@@ -65,7 +70,7 @@ static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
         for (size_t i = 0; i < 3 * count; i++)
             ring[i] = (ring[i] - lo[i % 3]) * scale;
         const geo_polygon polygon = {
-            .cls = NOC_CLASS_OTHER, .id = m->name, .ring_count = 1, .ring_size = &count, .xyz = ring
+            .cls = NOC_CLASS_OTHER, .id = m->name, .ring_count = 1, .ring_size = &count, .xyz = ring, .uv = uv
         };
         size_t before = m->extra.xyz.len;
         if (geo_triangulate(&polygon, &m->extra, m->issues))
@@ -73,6 +78,7 @@ static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
                 m->extra.xyz.data[i] = m->extra.xyz.data[i] / scale + lo[(i - before) % 3];
     }
     free(ring);
+    free(uv);
 }
 
 void cut_face(cut_mesh *m, const unsigned *corner, size_t count) {

@@ -7,6 +7,7 @@
 /* Triangles of a mesh in the making. extra holds those of polygons, with vertices of their own. */
 typedef struct cut_mesh {
     const double *xyz; /* 3 a vertex */
+    const float *uv;   /* 2 a vertex; NULL: none */
     uint32_t *indices; /* 3 a triangle; room for two triangles a face */
     size_t triangle_count;
     geo_triangles extra; /* its no_memory: of a face, which then is not there */

@@ -13,9 +13,12 @@ bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues
     return true;
 }
 
-static int add_material(void *ctx, const noc_material *material) {
+static noc_status add_material(void *ctx, const noc_material *material, const mesh_image *image, int *index) {
     const mesh_scene *to = ctx;
-    return noc_scene_add_material(to->scene, material);
+    *index = noc_scene_add_material(to->scene, material);
+    if (*index < 0)
+        return NOC_ERR_ARGUMENT; /* said by the scene */
+    return image && to->place->image ? to->place->image(to->place->ctx, *index, image) : NOC_OK;
 }
 
 static noc_status add_mesh(void *ctx, noc_mesh *mesh, double *positions) {

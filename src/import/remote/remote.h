@@ -32,8 +32,8 @@ enum {
     REMOTE_LOG = 32, /* level, text */
     REMOTE_CRS,      /* texts: srsName, place */
     REMOTE_LAMP,     /* geo_lamp, texts: id, ref */
-    REMOTE_MATERIAL, /* noc_material */
-    REMOTE_MESH,     /* remote_mesh, text: name, positions, indices */
+    REMOTE_MATERIAL, /* noc_material, remote_image, text: its name */
+    REMOTE_MESH,     /* remote_mesh, text: name, positions, indices, places in an image */
     REMOTE_ISSUE,    /* kind, count, texts: reason, examples */
     REMOTE_PROGRESS, /* double */
     REMOTE_COLUMNS,  /* points, count, and of each column values, mapped, texts: name, field, unit, example */
@@ -63,9 +63,14 @@ typedef struct remote_footprint {
     double height, min_height, levels, min_level, roof_height;
     uint64_t use;
 } remote_footprint;
+typedef struct remote_image {
+    uint32_t there, wrap;
+    float albedo[3];
+} remote_image;
 typedef struct remote_mesh {
     uint64_t vertices, triangles;
     int32_t material;
+    uint32_t places; /* 1: there are */
 } remote_mesh;
 typedef struct remote_end {
     int32_t status;

@@ -165,20 +165,31 @@ static noc_status on_features(void *ctx, const geo_features *features) {
     return NOC_OK;
 }
 
-static int on_material(void *ctx, const noc_material *material) {
+/* Of an image its name alone: whoever asked opens it. */
+static noc_status on_material(void *ctx, const noc_material *material, const mesh_image *image, int *index) {
     serving *s = ctx;
+    remote_image told = { 0 };
+    if (image) {
+        told = (remote_image){ .there = 1, .wrap = image->wrap };
+        memcpy(told.albedo, image->albedo, sizeof(told.albedo));
+    }
     remote_put(&s->out, material, sizeof(*material));
+    remote_put(&s->out, &told, sizeof(told));
+    remote_put_text(&s->out, image ? image->name : "");
     emit(s, REMOTE_MATERIAL);
-    return s->materials++;
+    *index = s->materials++;
+    return NOC_OK;
 }
 
 static noc_status on_mesh(void *ctx, noc_mesh *mesh, double *positions) {
     serving *s = ctx;
-    remote_mesh m = { mesh->vertex_count, mesh->triangle_count, mesh->material };
+    remote_mesh m = { mesh->vertex_count, mesh->triangle_count, mesh->material, mesh->uv != NULL };
     remote_put(&s->out, &m, sizeof(m));
     remote_put_text(&s->out, mesh->name);
     remote_put(&s->out, mesh->positions, mesh->vertex_count * 3 * sizeof(double));
     remote_put(&s->out, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
+    if (mesh->uv)
+        remote_put(&s->out, mesh->uv, mesh->vertex_count * 2 * sizeof(float));
     emit(s, REMOTE_MESH);
     return NOC_OK;
 }

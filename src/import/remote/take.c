@@ -190,11 +190,22 @@ static noc_status take_object_end(remote_taker *t) {
 
 static noc_status take_material(remote_taker *t, remote_record *one) {
     noc_material material;
-    if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided))
+    remote_image told = { 0 };
+    if (!remote_get(one, &material, sizeof(material)) || !remote_get(one, &told, sizeof(told)) || !t->parts ||
+        !is_bool(&material.two_sided) || material.texture)
         return garbled(t);
-    int index = t->parts->material(t->parts->ctx, &material);
-    if (index < 0)
-        return NOC_ERR_ARGUMENT; /* said */
+    mesh_image image = { .name = remote_get_text(one), .wrap = (noc_wrap)told.wrap };
+    bool sound = told.there <= 1 && told.wrap <= NOC_WRAP_CLAMP;
+    for (int k = 0; k < 3; k++) {
+        image.albedo[k] = told.albedo[k];
+        sound = sound && told.albedo[k] >= 0 && told.albedo[k] <= 1; /* false for NaN, too */
+    }
+    if (one->bad || !sound)
+        return garbled(t);
+    int index;
+    noc_status status = t->parts->material(t->parts->ctx, &material, told.there ? &image : NULL, &index);
+    if (status)
+        return status;
     return array_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
 }
 
@@ -204,25 +215,31 @@ static noc_status take_mesh(remote_taker *t, remote_record *one) {
     const char *name = remote_get_text(one);
     const void *positions = remote_get_array(one, m.vertices, 3 * sizeof(double));
     const void *indices = remote_get_array(one, m.triangles, 3 * sizeof(uint32_t));
-    if (one->bad || !t->parts || m.material < 0 || (size_t)m.material >= t->materials.len)
+    const void *places = remote_get_array(one, m.places ? m.vertices : 0, 2 * sizeof(float));
+    if (one->bad || !t->parts || m.material < 0 || (size_t)m.material >= t->materials.len || m.places > 1)
         return garbled(t);
+    float *uv = m.places ? noc_alloc_large((size_t)m.vertices * 2, sizeof(*uv)) : NULL;
     double *xyz = noc_alloc_large((size_t)m.vertices * 3, sizeof(*xyz)); /* aligned */
     uint32_t *corners = noc_alloc_large((size_t)m.triangles * 3, sizeof(*corners));
     noc_status status = NOC_OK;
-    if (!xyz || !corners) {
+    if (!xyz || !corners || (m.places && !uv)) {
         status = noc_no_memory(t->sink->log, t->path);
     } else {
         memcpy(xyz, positions, (size_t)m.vertices * 3 * sizeof(*xyz));
         memcpy(corners, indices, (size_t)m.triangles * 3 * sizeof(*corners));
+        if (uv)
+            memcpy(uv, places, (size_t)m.vertices * 2 * sizeof(*uv));
         noc_mesh mesh = { .vertex_count = (size_t)m.vertices,
                           .positions = xyz,
                           .triangle_count = (size_t)m.triangles,
                           .indices = corners,
                           .material = t->materials.data[m.material],
+                          .uv = uv,
                           .name = *name ? name : NULL };
         status = t->parts->mesh(t->parts->ctx, &mesh, xyz);
     }
     free(xyz);
+    free(uv);
     free(corners);
     return status;
 }
