@@ -153,12 +153,14 @@ typedef struct reading {
     bool failed; /* atomic */
 } reading;
 
-/* A block's pages at once cost less than a fault each. Where the system knows no such call, they come as they are
- * written to. */
+/* A large block's pages at once cost less than a fault each. A system that knows no such call, or has larger pages,
+ * refuses it, and they come as they are written to. */
 static void make_pages(uint8_t *bytes, size_t size) {
 #ifdef MADV_POPULATE_WRITE
-    uint8_t *page = bytes - (uintptr_t)bytes % NOCT_HEAD;
-    (void)!madvise(page, size + (size_t)(bytes - page), MADV_POPULATE_WRITE);
+    enum { PAGE = 4096 };
+    uint8_t *page = bytes - (uintptr_t)bytes % PAGE;
+    if (size >= 16 * (size_t)PAGE)
+        (void)!madvise(page, size + (size_t)(bytes - page), MADV_POPULATE_WRITE);
 #endif
 }
 
