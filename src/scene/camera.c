@@ -1,4 +1,5 @@
 /* Views derived from any city: what its triangles cover and where its lights are decides, never a name or a place.
+ * What is switched does not: by day and by night, lamps on or off, with or without cars, a city has the same views.
  *
  * All choices are maxima over a fixed list of candidates in a fixed order, so the same scene gives the same camera. */
 #include "scene/camera.h"
@@ -64,6 +65,20 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
 
 double noc_light_weight(const noc_light_record *r) { return sqrt(noc_light_flux(r)); }
 
+/* A light as it was made: what is off or dimmed for now, a dark window or a group, is looked at all the same. */
+static bool light_get(const noc_scene *s, uint32_t i, view_light *out) {
+    noc_light_record r = noc_light_made(s, i);
+    if (r.flags & NOC_LIGHT_MOVES)
+        return false;
+    const noc_scene_window *window = noc_light_weight(&r) > 0 ? NULL : noc_window_of(s, i);
+    if (window && !window->removed)
+        memcpy(r.e, window->emission, sizeof(r.e));
+    noc_light_centre(&r, out->p);
+    out->weight = noc_light_weight(&r);
+    out->lamp = r.kind != NOC_LIGHT_TRIANGLE && r.kind != NOC_LIGHT_PARALLELOGRAM;
+    return out->weight > 0;
+}
+
 /* Without lights, or where those are not the city's, buildings stand in for them: a corner of every so many of their
  * triangles. */
 static bool by_lights(const noc_scene *s) { return s->lights.len && !s->lit_elsewhere; }
@@ -76,13 +91,8 @@ static size_t source_count(const view_city *city) {
 static bool source_get(const view_city *city, size_t i, view_light *out) {
     const noc_scene *s = city->scene;
     *out = (view_light){ .weight = 1 };
-    if (by_lights(s)) {
-        const noc_light_record *r = &s->lights.data[i];
-        noc_light_centre(r, out->p);
-        out->weight = noc_light_weight(r);
-        out->lamp = r->kind != NOC_LIGHT_TRIANGLE && r->kind != NOC_LIGHT_PARALLELOGRAM;
-        return out->weight > 0;
-    }
+    if (by_lights(s))
+        return light_get(s, (uint32_t)i, out);
     size_t t = noc_scene_city_triangle(s, i * noc_scene_city_triangles(s) / source_count(city));
     noc_class cls = s->materials.data[s->triangle_material.data[t]].cls;
     for (int k = 0; k < 3; k++)

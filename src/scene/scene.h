@@ -444,7 +444,8 @@ bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane);
 /* Before the first commit: lit or dark, as params say. */
 void noc_scene_light_windows(noc_scene *s, const noc_window_params *params);
 void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes *c);
-void noc_window_forget(noc_scene *s, uint32_t light);     /* a light that goes; it need not be a window's */
+noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light); /* NULL: the light is no window's, and never was */
+void noc_window_forget(noc_scene *s, uint32_t light);                /* a light that goes; it need not be a window's */
 const char *noc_window_fault(const noc_window_params *p); /* what is wrong with lit_windows or hour, NULL if nothing */
 
 /* model.c */

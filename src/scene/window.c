@@ -113,7 +113,7 @@ void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes 
 }
 
 /* They lie in the order of their lights. */
-void noc_window_forget(noc_scene *s, uint32_t light) {
+noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light) {
     size_t low = 0, high = s->windows.len;
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -122,8 +122,13 @@ void noc_window_forget(noc_scene *s, uint32_t light) {
         else
             high = middle;
     }
-    if (low < s->windows.len && s->windows.data[low].light == light)
-        s->windows.data[low].removed = true;
+    return low < s->windows.len && s->windows.data[low].light == light ? &s->windows.data[low] : NULL;
+}
+
+void noc_window_forget(noc_scene *s, uint32_t light) {
+    noc_scene_window *window = noc_window_of(s, light);
+    if (window)
+        window->removed = true;
 }
 
 noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params) {

@@ -165,6 +165,30 @@ static void test_switched(void **state) {
     finish(&b);
 }
 
+/* A picture of before and one of after show the same place. */
+static void test_same_views(void **state) {
+    (void)state;
+    static const struct {
+        double lit;
+        const char *off;
+    } cases[] = { { .6, NULL }, { .05, NULL }, { 0, NULL }, { .3, "windows" }, { .3, "lamps" } };
+    for (noc_viewpoint view = NOC_VIEWPOINT_STREET; view <= NOC_VIEWPOINT_OVERVIEW; view++) {
+        noc_camera first, c;
+        for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+            struct run r;
+            load(&r, BLOCK("0", "1"), cases[i].lit, 21);
+            if (cases[i].off)
+                assert_int_equal(noc_scene_say_group(r.scene, noc_scene_find_group(r.scene, cases[i].off), "off"),
+                                 NOC_OK);
+            assert_int_equal(noc_scene_commit(r.scene), NOC_OK);
+            assert_int_equal(noc_scene_camera(r.scene, view, 1.5, i ? &c : &first), NOC_OK);
+            if (i)
+                assert_memory_equal(&c, &first, sizeof(c));
+            finish(&r);
+        }
+    }
+}
+
 static void test_share(void **state) {
     (void)state;
     for (int kind = 0; kind < NOC_WINDOW_KIND_COUNT; kind++) {
@@ -331,9 +355,10 @@ static void test_progress(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),      cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_switched),  cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_threads), cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_made),       cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
+        cmocka_unit_test(test_switched),   cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_no_memory),  cmocka_unit_test(test_threads), cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_same_views),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
