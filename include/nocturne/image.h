@@ -37,9 +37,10 @@ typedef struct noc_display_params {
     double ev100;
     double compensation; /* stops added to the automatic exposure, positive is brighter; default 0 */
     noc_tonemap tonemap;
+    double white_kelvin; /* K; a black body of it is shown as the screen's white; default 6500, and so is 0 */
 } noc_display_params;
 
-#define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC)
+#define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC) set(white_kelvin, 6500)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_DEFAULTS)
 #else
@@ -118,7 +119,8 @@ typedef struct noc_compare_params {
 } noc_compare_params;
 
 #define NOC_COMPARE_DEFAULTS(set)                                                                                      \
-    set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
+    set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)                         \
+        set(display.white_kelvin, 6500)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_DEFAULTS)
 #else

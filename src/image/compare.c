@@ -137,9 +137,9 @@ noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_c
         return noc_no_memory(log, "compare");
     if (p.relative) { /* they have been displayed already */
         ev100 = -log2(IMAGE_SATURATION);
-        p.display.tonemap = NOC_TONEMAP_LINEAR;
+        p.display = (noc_display_params){ .tonemap = NOC_TONEMAP_LINEAR };
     }
-    display_init(&d, p.display.tonemap, ev100);
+    display_init(&d, &p.display, ev100);
     set sets[4] = { { .dark = false }, { .clamped = true }, { .dark = true }, { .dark = true, .clamped = true } };
     pass_over(x, r, p.ceiling, &d, sets, false);
     pass_over(x, r, p.ceiling, &d, sets, true);

@@ -1,6 +1,8 @@
 /* Exposure and tone mapping: how a picture in cd/m2 is shown. None of this enters a measurement except RMSE-8. */
 #include "image/internal.h"
 
+#include <nocturne/luminaire.h>
+
 #include <math.h>
 
 /* Automatic exposure
@@ -118,32 +120,51 @@ double tonemap_curve(noc_tonemap tonemap, double x) {
     return NOC_MIN(x, 1);
 }
 
-void display_init(display_map *d, noc_tonemap tonemap, double ev100) {
-    d->tonemap = tonemap;
-    d->scale = exp2(-ev100) / IMAGE_SATURATION;
+/* White balance scales the channels, as cameras do (von Kries' rule with the screen's primaries). Luminance 1 of the
+ * white that is asked for becomes luminance 1 of the screen's. */
+void display_init(display_map *d, const noc_display_params *params, double ev100) {
+    float from[3], to[3];
+    noc_kelvin_rgb(params && params->white_kelvin > 0 ? params->white_kelvin : DISPLAY_WHITE, from);
+    noc_kelvin_rgb(DISPLAY_WHITE, to);
+    d->tonemap = params ? params->tonemap : NOC_TONEMAP_FILMIC;
+    for (int k = 0; k < 3; k++)
+        d->scale[k] = exp2(-ev100) / IMAGE_SATURATION * ((double)to[k] / (double)from[k]);
     srgb8_table_init(&d->srgb);
 }
 
 /* Exposed value at which a quarter of the chroma has gone: warm windows and pools stay warm, lamps themselves turn
  * white. */
 #define DESATURATION 6.0
+/* But tail lamps stay red: a colour whose luminance is less than PURE of a grey's with the same peak keeps all but
+ * PURE_WHITE of its chroma, one of MIXED or more may lose it all. Red is at .21 and blue at .07, a black body of 2000
+ * K, sodium, at .41. */
+#define PURE 0.22
+#define MIXED 0.38
+#define PURE_WHITE 0.06
+
+static double most_white(const double v[3], double peak) {
+    double luminance = (0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2]) / peak;
+    double t = NOC_CLAMP((luminance - PURE) / (MIXED - PURE), 0, 1);
+    return PURE_WHITE + (1 - PURE_WHITE) * t * t * (3 - 2 * t);
+}
 
 /* The curve is applied to the largest component, and the others keep their ratio to it, so hue holds (a curve a channel
  * turns sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the
  * same peak by (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = DESATURATION, and nearly all of it far
- * above. Both factors rise with exposure, so every channel does. The linear tone map shows what is there, clipped. */
+ * above; a pure colour keeps most of it. Both factors rise with exposure, so every channel does. The linear tone map
+ * shows what is there, clipped. */
 static void display_linear(const display_map *d, const float rgb[3], double v[3]) {
     double peak = 0;
     bool finite = image_finite(rgb);
     for (int k = 0; k < 3; k++) {
-        v[k] = finite ? NOC_MAX(rgb[k] * d->scale, 0) : 0;
+        v[k] = finite ? NOC_MAX(rgb[k] * d->scale[k], 0) : 0;
         peak = NOC_MAX(peak, v[k]);
     }
     if (d->tonemap == NOC_TONEMAP_LINEAR || !(peak > 0))
         return;
     double level = tonemap_curve(d->tonemap, peak);
     double white = peak / (peak + DESATURATION);
-    white = peak > 1e9 ? 1 : white * white;
+    white = (peak > 1e9 ? 1 : white * white) * most_white(v, peak);
     for (int k = 0; k < 3; k++) {
         double ratio = v[k] / peak;
         v[k] = level * (ratio + (1 - ratio) * white);
@@ -194,7 +215,7 @@ noc_status noc_image_to_srgb8(const noc_image *image, const noc_display_params *
     double ev100;
     if (!display_ev100(image, params, &ev100))
         return NOC_ERR_MEMORY;
-    display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, ev100);
+    display_init(&d, params, ev100);
     size_t n = image_pixels(image);
     for (size_t i = 0; i < n; i++) {
         float share = image->coverage ? image->coverage[4 * i + 3] : 0;

@@ -38,14 +38,16 @@ typedef struct srgb8_table {
 void srgb8_table_init(srgb8_table *table);
 uint8_t srgb8_encode(const srgb8_table *table, float linear); /* the nearest code; clamps; NaN gives 0 */
 
+#define DISPLAY_WHITE 6500.0 /* K, where colours are shown as they are */
+
 /* display.c: from cd/m2 to 8-bit sRGB, one pixel at a time. */
 typedef struct display_map {
     noc_tonemap tonemap;
-    double scale; /* multiplies cd/m2 */
+    double scale[3]; /* multiplies cd/m2: exposure and white balance */
     srgb8_table srgb;
 } display_map;
-/* ev100 is the exposure in effect (display_ev100). */
-void display_init(display_map *d, noc_tonemap tonemap, double ev100);
+/* ev100 is the exposure in effect (display_ev100); params NULL: defaults. */
+void display_init(display_map *d, const noc_display_params *params, double ev100);
 /* params NULL: defaults. False: memory was refused. */
 bool display_ev100(const noc_image *image, const noc_display_params *params, double *ev100) NOC_MUST_USE;
 void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]);

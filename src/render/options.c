@@ -113,6 +113,8 @@ static const noc_option display_options[] = {
     REAL(P, compensation, "compensation", "Display", -20, 20, "stops",
          "added to the automatic exposure; more is brighter", "auto-exposure=true"),
     CHOICE(P, tonemap, "tonemap", "Display", "filmic|reinhard|linear", "curve from luminance to the screen"),
+    REAL(P, white_kelvin, "white-balance", "Display", 2500, 15000, "K",
+         "colour temperature that is shown as white, as a camera is set; not for EXR"),
     END,
 };
 /* clang-format on */
