@@ -16,12 +16,16 @@ static void add_texts(cli_args *args, const noc_texts *texts) {
         for (size_t k = 0; k < args->input_count && !there; k++)
             there = !strcmp(args->inputs[k], texts->text[i]);
         if (!there)
-            /* there is room for every word of the command line */
             args->inputs[args->input_count++] = texts->text[i];
     }
 }
 
 void cli_add_named(cli_args *args, const noc_import_params *import) {
+    size_t most = args->input_count + import->lamps.count + import->tracks.count;
+    const char **inputs = cli_alloc(sizeof(char *) * (most + 1));
+    memcpy(inputs, args->inputs, sizeof(char *) * args->input_count);
+    free(args->inputs);
+    args->inputs = inputs;
     add_texts(args, &import->lamps);
     add_texts(args, &import->tracks);
 }

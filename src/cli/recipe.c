@@ -14,8 +14,7 @@ static bool reads_cities(const cli_command *command) {
 /* Inputs of the recipe where it stood, the others around it. */
 static void replace_input(cli_args *args, size_t index, const noc_recipe_info *recipe) {
     size_t count = args->input_count - 1 + recipe->input_count, n = 0;
-    /* cli_add_named needs room for what is named with --lamps and --tracks, by the command line or by the recipe */
-    const char **inputs = cli_alloc(sizeof(char *) * (count + args->input_count + NOC_TEXTS + 1));
+    const char **inputs = cli_alloc(sizeof(char *) * (count + 1));
     for (size_t i = 0; i < args->input_count; i++) {
         for (size_t k = 0; i == index && k < recipe->input_count; k++)
             inputs[n++] = recipe->inputs[k];
