@@ -25,11 +25,13 @@ typedef struct noc_save_params {
     /* A recipe without inputs (nocturne/recipe.h): cameras by name, and options, which noc_recipe_load finds in the
      * file; NULL, the default: none */
     const char *recipe;
+    noc_progress progress; /* asked while the file is written; update NULL, the default: none */
 } noc_save_params;
 
 /* Writes the scene as a built city. The file appears under its name when it is whole; one that was there is replaced
  * then. params may be NULL. NOC_ERR_ARGUMENT after reporting: the scene is not committed, or edits of it wait for a
- * commit. NOC_ERR_IO, NOC_ERR_MEMORY. Waits for a commit at work, and frames may be rendered meanwhile. */
+ * commit. NOC_ERR_CANCELLED by progress, NOC_ERR_IO, NOC_ERR_MEMORY: there is no new file then.
+ * Waits for a commit at work, and frames may be rendered meanwhile. */
 NOC_API noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_save_params *params);
 
 /* Is the file a built city? By its first bytes; false where it cannot be read. */

@@ -180,6 +180,17 @@ static void print_summary(const build_args *args, const noc_scene *scene, const 
     printf("  draw it: nocturne render %s -o night.png\n", path);
 }
 
+/* From here on an interrupt waits for the file to go, or to be whole. */
+static noc_status save(const build_args *args, const noc_scene *scene, const noc_report *report) {
+    char *recipe = make_recipe(args);
+    cli_nothing_to_keep(false);
+    noc_status status =
+        noc_scene_save(scene, args->output, &(noc_save_params){ report, recipe, { cli_load_progress, NULL } });
+    cli_progress_clear();
+    free(recipe);
+    return status;
+}
+
 static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     double started = cli_now();
     noc_report *report = NULL;
@@ -190,13 +201,11 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     noc_status status = noc_scene_load(scene, args->common.inputs, args->common.input_count, &args->import, &report);
     status = status ? status : cli_switch_built(&args->common, scene, &args->import);
     cli_progress_clear();
-    if (!status && !cli_interrupted()) {
-        char *recipe = make_recipe(args);
-        status = noc_scene_save(scene, args->output, &(noc_save_params){ report, recipe });
-        free(recipe);
-        if (!status && !args->common.quiet)
-            print_summary(args, scene, report, cli_now() - started);
-    }
+    if (!status && cli_interrupted())
+        status = NOC_ERR_CANCELLED;
+    status = status ? status : save(args, scene, report);
+    if (!status && !args->common.quiet)
+        print_summary(args, scene, report, cli_now() - started);
     noc_report_destroy(report);
     return status;
 }
@@ -214,8 +223,8 @@ static int run(void *arguments) {
     status = scene && !build(args, log, scene) ? CLI_OK : CLI_FAILURE;
     noc_scene_destroy(scene);
     noc_log_destroy(log);
-    if (cli_interrupted()) {
-        cli_error("interrupted");
+    if (status && cli_interrupted()) { /* a file that is whole is no interrupted one */
+        cli_error("interrupted: nothing was saved");
         return CLI_INTERRUPTED + cli_interrupted();
     }
     return cli_flush(stdout) ? status : CLI_FAILURE;

@@ -23,6 +23,8 @@ typedef struct noct_writer noct_writer;
 /* layout: a number for all that the reader must have in common with the writer beyond the version: sizes of records,
  * numbers of classes and kinds. NULL after reporting. */
 noct_writer *noct_create(const char *path, uint64_t layout, noc_log *log, noc_status *status);
+/* Asks progress between blocks whether to go on, from now on; done is what it is told. NOC_ERR_CANCELLED where not. */
+void noct_watch(noct_writer *w, const noc_progress *progress, double done);
 /* What goes wrong stays with the writer, and noct_close tells it: nobody else needs to ask. */
 void noct_begin(noct_writer *w, const char *name); /* of at most 8 letters */
 void noct_end(noct_writer *w);

@@ -9,6 +9,8 @@ struct noct_writer {
     noc_log *log;
     output out;
     noc_status status; /* the first thing that went wrong, reported */
+    noc_progress progress;
+    double done;
     noct_head head;
     noct_entry entries[NOCT_SECTIONS];
     uint64_t at;    /* bytes of the file so far */
@@ -59,7 +61,14 @@ void noct_begin(noct_writer *w, const char *name) {
     memcpy(e->name, name, strnlen(name, sizeof(e->name)));
 }
 
+void noct_watch(noct_writer *w, const noc_progress *progress, double done) {
+    w->progress = *progress;
+    w->done = done;
+}
+
 static void flush_block(noct_writer *w) {
+    if (!w->status && w->progress.update && !w->progress.update(w->progress.user, "saving", w->done))
+        w->status = noc_cancelled(w->log, "%.400s: saving was cancelled", w->out.path);
     if (!w->status && !array_push(&w->sums, noct_sum(w->block, w->filled)))
         w->status = noc_no_memory(w->log, w->out.path);
     emit(w, w->block, w->filled);

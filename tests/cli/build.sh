@@ -141,4 +141,15 @@ expect "one that is cut short" 1 'short.noct: is damaged: it has 5000 bytes' ren
 run build nothing.gml -o none.noct
 [ "$status" = 1 ] && [ ! -e none.noct ] && [ -z "$(find . -name '*.part')" ]
 result $? "a build that fails leaves nothing"
+mkdir there
+env --default-signal=INT "$program" build builtin:city --city-size 1500 -o there/big.noct >out 2>err </dev/null &
+pid=$!
+until [ -n "$(ls -A there)" ] || ! kill -0 $pid 2>err; do sleep 0.05; done
+kill -INT $pid
+wait $pid
+status=$?
+# a machine that is quicker than that has the whole file
+[ $status = 130 ] && grep -q 'nothing was saved' err && [ -z "$(ls -A there)" ] ||
+    { [ $status = 0 ] && [ "$(ls -A there)" = big.noct ]; }
+result $? "Ctrl-C while it is written leaves nothing" "$status: $(ls -A there)"
 finish

@@ -89,6 +89,12 @@ static void assert_same_report(const noc_report *a, const noc_report *b) {
     }
 }
 
+static bool stop_at_third(void *user, const char *what, double done) {
+    assert_non_null(what);
+    assert_true(done >= 0 && done < 1);
+    return ++*(int *)user < 3;
+}
+
 static void test_builtin(void **state) {
     (void)state;
     noc_scene *scene = noc_scene_create(NULL);
@@ -96,6 +102,11 @@ static void test_builtin(void **state) {
     assert_int_equal(noc_scene_save(scene, path, NULL), NOC_ERR_ARGUMENT); /* not committed */
     assert_int_equal(access(path, F_OK), -1);
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    int asked = 0;
+    noc_save_params stopped = { .progress = { stop_at_third, &asked } };
+    assert_int_equal(noc_scene_save(scene, path, &stopped), NOC_ERR_CANCELLED);
+    assert_int_equal(asked, 3);
+    assert_int_equal(access(path, F_OK), -1);
     assert_int_equal(noc_scene_save(scene, path, NULL), NOC_OK);
     assert_true(noc_built_is(path));
     noc_scene *again = load_again(NULL);

@@ -65,8 +65,11 @@ noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_sa
     if (!w)
         return status;
     noc_scene_lock_read(scene);
-    for (size_t i = 0; i < NOC_COUNT(parts); i++)
+    for (size_t i = 0; i < NOC_COUNT(parts); i++) {
+        if (params)
+            noct_watch(w, &params->progress, (double)i / NOC_COUNT(parts));
         parts[i].write(w, scene);
+    }
     noc_scene_unlock_read(scene);
     built_write_report(w, params ? params->report : NULL);
     if (params && params->recipe)
