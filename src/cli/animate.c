@@ -252,7 +252,7 @@ static noc_status look_at_pictures(animation *a) {
     noc_status status = NOC_OK;
     a->kept = cli_alloc((size_t)a->pictures * sizeof(*a->kept));
     for (int i = 0; i < a->pictures && !a->args->overwrite && !status; i++)
-        status = look_at_picture(a, i);
+        status = cli_interrupted() ? NOC_ERR_CANCELLED : look_at_picture(a, i);
     return status;
 }
 
@@ -481,11 +481,11 @@ static noc_status make(animation *a) {
 }
 
 static void tell(const animation *a) {
-    char text[240], *first = cli_series_file(&a->series, 1), *last = cli_series_file(&a->series, a->pictures);
+    char text[240], to[240], *first = cli_series_file(&a->series, 1), *last = cli_series_file(&a->series, a->pictures);
     if (cli_is_film(a->job->args->output))
         puts(noc_text_clean(text, sizeof(text), a->film));
     else
-        printf("%s ... %s\n", noc_text_clean(text, sizeof(text), first), last);
+        printf("%s ... %s\n", noc_text_clean(text, sizeof(text), first), noc_text_clean(to, sizeof(to), last));
     printf("  animation %d pictures", a->pictures);
     if (a->kept_count)
         printf(", %d of them were there", a->kept_count);
@@ -505,6 +505,8 @@ int cli_animate(render_job *job) {
     int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
     if (cli_is_failure(status)) {
         ending = CLI_FAILURE;
+    } else if (ending && !(a.began > 0)) {
+        cli_error("interrupted before a picture was rendered");
     } else if (ending) {
         cli_error("interrupted: %d of %d pictures are there; the same command goes on", a.kept_count + a.made,
                   a.pictures);

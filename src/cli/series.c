@@ -33,12 +33,12 @@ int cli_series_parse(const char *output, cli_series *series) {
         series->suffix = cli_format(".png");
         return CLI_OK;
     }
-    const char *percent = strchr(output, '%');
-    if (!percent)
+    const char *slash = strrchr(output, '/'), *percent = strchr(slash ? slash : output, '%');
+    if (!strchr(output, '%'))
         return cli_usage(&cli_render,
                          "--animate: \"%.80s\" names one picture; frame-%%04d.png names one for each number", output);
-    const char *rest = parse_number(percent, &series->digits);
-    if (!rest || strchr(rest, '%') || strchr(rest, '/'))
+    const char *rest = percent ? parse_number(percent, &series->digits) : NULL;
+    if (!rest || strchr(rest, '%'))
         return cli_usage(&cli_render,
                          "--animate: \"%.80s\": the file's name holds one %%d, or %%0Nd for N digits, and no other %%",
                          output);

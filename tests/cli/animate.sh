@@ -215,6 +215,10 @@ expect "a name without a number" 2 'names one picture; frame-%04d.png names one'
 for name in 'a%s.png' 'a%4d.png' 'a%d%d.png' 'a%d-100%.png' 'a%0000000004d.png' 'a%00d.png' '%d/a.png' 'a%ld.png'; do
     expect "$name" 2 "one %d, or %0Nd" render lamp.yaml --animate -o "$name"
 done
+mkdir 'of%d'
+run render lamp.yaml --animate --frames 2 --samples 1 --no-mp4 -o 'of%d/a-%d.png'
+test "$(ls 'of%d')" = "a-1.png
+a-2.png"; result $? "a folder's name may hold a %"
 expect "a format that is not written" 2 'must end in .png or .exr' render lamp.yaml --animate -o a%d.jpg
 expect "a path that is not there" 2 'no path "wya"; is it way\?' render lamp.yaml --animate --path wya -o a%d.png
 expect "a path without a recipe" 2 'no path "fly"; paths besides orbit and pan are of recipes' \
