@@ -9,7 +9,7 @@
 enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
 
 #define CLI_SETS 14
-#define CLI_GIVEN 96
+#define CLI_GIVEN 256
 
 /* What every command's arguments begin with. */
 typedef struct cli_args {
@@ -82,7 +82,8 @@ char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1
 #define CLI_IDS_WIDTH 72
 char *cli_ids(const char *list, size_t count, size_t width);
 void cli_json_text(FILE *out, const char *text); /* quoted and escaped; valid UTF-8 whatever came in */
-void cli_yaml_text(FILE *out, const char *text); /* in double quotes, as YAML reads it */
+void cli_yaml_text(FILE *out, const char *text); /* in double quotes, as YAML reads it where it is UTF-8 */
+const char *cli_not_utf8(const char *text);      /* where it is not UTF-8; NULL where all of it is */
 void cli_json_number(FILE *out, double v);       /* null where it is not finite */
 /* false after saying that stdout could not be written */
 bool cli_flush(FILE *out);

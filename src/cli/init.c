@@ -38,29 +38,28 @@ typedef struct found {
 
 /* ---- paths ---- */
 
-/* As seen from a folder, unless they have nothing but the root in common; both are absolute. free() it. */
+/* As seen from a folder, unless they have nothing but the root in common; both are absolute. What a recipe takes for a
+ * built-in scene or for a list of inputs is told from those by its "./". free() it. */
 static char *relative(const char *folder, const char *path) {
-    size_t common = 0, up = 0, n = 0;
-    while (folder[n] && folder[n] == path[n])
-        if (folder[n++] == '/')
-            common = n;
-    if (!folder[n] && path[n] == '/')
-        common = n + 1;
-    else if (!folder[n] && !path[n])
-        common = n;
+    size_t common = 0, n = 0;
+    for (; folder[n] && folder[n] == path[n]; n++)
+        if (folder[n] == '/')
+            common = n + 1;
     if (common <= 1)
         return cli_format("%s", path);
-    for (const char *c = folder + common; *c; c++)
-        up += *c == '/' || c == folder + common;
-    char *text = cli_format("%s", "");
-    for (size_t i = 0; i < up; i++) {
+    if (!folder[n] && !path[n])
+        return cli_format(".");
+    if (!folder[n] && path[n] == '/') {
+        const char *below = path + n + 1;
+        return cli_format("%s%s", *below == '@' || cli_builtin(below) ? "./" : "", below);
+    }
+    char *text = cli_format("%s", path + common);
+    for (const char *c = folder + common; c; c = strchr(c, '/') ? strchr(c, '/') + 1 : NULL) {
         char *more = cli_format("../%s", text);
         free(text);
         text = more;
     }
-    char *whole = cli_format("%s%s", text, path + common);
-    free(text);
-    return whole;
+    return text;
 }
 
 /* ---- what it says ---- */
@@ -217,7 +216,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     fprintf(out, "# Made by nocturne init (%s). docs/recipes.md tells all keys; # begins what waits to be used.\n",
             noc_version());
     fputs("nocturne: 1\nname: ", out);
-    cli_yaml_text(out, *name ? name : "city");
+    cli_yaml_text(out, *name && !cli_not_utf8(name) ? name : "city");
     fputs("\n\ninputs:\n", out);
     for (size_t i = 1; i < args->common.input_count && !status && !cli_interrupted(); i++) {
         const char *input = args->common.inputs[i];
@@ -269,25 +268,47 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
 
 /* ---- the file ---- */
 
+/* A recipe is UTF-8. Names of files need not be. */
+static noc_status check_text(const char *path, const char *text) {
+    const char *bad = cli_not_utf8(text), *line = bad;
+    if (!bad)
+        return NOC_OK;
+    while (line > text && line[-1] != '\n')
+        line--;
+    line += strspn(line, " -");
+    cli_error("%.400s: a recipe is UTF-8, and this name is not: %.*s", path, (int)strcspn(line, "\n"), line);
+    return NOC_ERR_FORMAT;
+}
+
 /* Written beside its place and linked there when it is whole: one that is there is never overwritten. */
-static int write_recipe(const init_args *args, const char *folder, const char *path, noc_log *log) {
+static noc_status write_text(const char *folder, const char *path, const char *text) {
     char *temporary = cli_format("%s/.city.yaml.%ld", folder, (long)getpid());
     unlink(temporary);
     FILE *out = fopen(temporary, "wx");
-    noc_status status = out ? NOC_OK : NOC_ERR_IO;
-    if (out) {
-        status = print_recipe(args, folder, log, out);
-        bool failed = ferror(out) != 0;
-        failed = fclose(out) || failed;
-        if (!status && !cli_interrupted() && (failed || link(temporary, path)))
-            status = NOC_ERR_IO;
-        else if (status == NOC_ERR_IO)
-            status = NOC_ERR_FORMAT; /* it was told */
-    }
-    if (status == NOC_ERR_IO)
+    bool failed = !out || fputs(text, out) < 0;
+    failed = (out && fclose(out)) || failed || link(temporary, path);
+    if (failed)
         cli_error("%.400s: %s", path, strerror(errno));
     unlink(temporary);
     free(temporary);
+    return failed ? NOC_ERR_IO : NOC_OK;
+}
+
+/* Nothing is on the disk before all of it is known: reading may take long, and may be interrupted. */
+static int write_recipe(const init_args *args, const char *folder, const char *path, noc_log *log) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        cli_no_memory();
+    noc_status status = print_recipe(args, folder, log, out);
+    if (fclose(out) || !text)
+        cli_no_memory();
+    if (!status && !cli_interrupted())
+        status = check_text(path, text);
+    if (!status && !cli_interrupted())
+        status = write_text(folder, path, text);
+    free(text);
     if (cli_interrupted())
         return CLI_INTERRUPTED + cli_interrupted();
     return status ? CLI_FAILURE : CLI_OK;
@@ -318,6 +339,9 @@ static int run(void *arguments) {
     if (!access(path, F_OK)) {
         cli_error("%.400s is there already and is left alone", path);
         status = CLI_FAILURE;
+    } else if (access(folder, W_OK | X_OK)) {
+        cli_error("%.400s: this folder cannot be written: %s", named, strerror(errno));
+        status = CLI_FAILURE;
     }
     if (!status) {
         cli_catch_signals();
@@ -330,8 +354,11 @@ static int run(void *arguments) {
     }
     if (status && !there)
         rmdir(folder);
-    if (!status && !args->common.quiet)
-        printf("%s\n  draw it: nocturne render %s -o night.png\n", path, path);
+    if (!status && !args->common.quiet) {
+        char shown[400];
+        noc_text_clean(shown, sizeof(shown), path);
+        printf("%s\n  draw it: nocturne render %s -o night.png\n", shown, shown);
+    }
     free(path);
     free(folder);
     return cli_flush(stdout) ? status : CLI_FAILURE;

@@ -135,15 +135,33 @@ void cli_json_text(FILE *out, const char *text) {
     fputc('"', out);
 }
 
+const char *cli_not_utf8(const char *text) {
+    const unsigned char *s = (const unsigned char *)text;
+    for (int n; *s; s += n)
+        if (!(n = utf8_length(s)))
+            return (const char *)s;
+    return NULL;
+}
+
+/* What YAML allows in no text, or takes for the end of a line, where it stands for itself. */
+static bool must_be_escaped(unsigned code) {
+    return code < 32 || (code >= 127 && code < 160) || code == 0x2028 || code == 0x2029 || code == 0xfeff ||
+           code == 0xfffe || code == 0xffff;
+}
+
 void cli_yaml_text(FILE *out, const char *text) {
     fputc('"', out);
-    for (const char *c = text; *c; c++)
-        if (*c == '"' || *c == '\\')
-            fprintf(out, "\\%c", *c);
-        else if ((unsigned char)*c < 32)
-            fprintf(out, "\\x%02x", (unsigned char)*c);
+    for (const unsigned char *s = (const unsigned char *)text; *s;) {
+        int n = utf8_length(s);
+        unsigned code = n == 2   ? (s[0] & 31u) << 6 | (s[1] & 63u)
+                        : n == 3 ? (s[0] & 15u) << 12 | (s[1] & 63u) << 6 | (s[2] & 63u)
+                                 : *s;
+        if (n && must_be_escaped(code))
+            fprintf(out, "\\u%04x", code);
         else
-            fputc(*c, out);
+            fprintf(out, "%s%.*s", *s == '"' || *s == '\\' ? "\\" : "", n ? n : 1, (const char *)s);
+        s += n ? n : 1;
+    }
     fputc('"', out);
 }
 

@@ -74,6 +74,33 @@ draw words.exr city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --
 run compare said.exr words.exr
 grep -Eq 'all pixels +1,536 +0.000 +0 ' out && grep -q '^  height: 8' said/city.yaml
 result $? "what init is told is in the recipe" "$(cat said/city.yaml)"
+# beneath the folder, the folder itself, and names that a recipe takes for something else
+mkdir -p 'here/a  b'
+cp city.gml 'here/a  b/one.gml'
+cp city.gml here/builtin:city
+run init here 'here/a  b/one.gml' here/builtin:city here
+grep -q '^  - "a  b/one.gml"' here/city.yaml && grep -q '^  - "./builtin:city"' here/city.yaml &&
+    grep -q '^  - "\."' here/city.yaml
+result $? "init names files beneath its folder" "$(grep -A 4 '^inputs' here/city.yaml)"
+rm here/city.yaml
+run init here here/builtin:city
+draw here.png here/city.yaml --size 8x8
+odd=$(printf 'of\302\205\177\342\200\250one')
+cp city.gml "$odd.gml"
+run init "$odd" "$odd.gml"
+draw odd.png "$odd/city.yaml" --size 8x8
+odd=$(printf 'not\377utf')
+cp city.gml "$odd.gml"
+expect "init of a name that is no UTF-8" 1 'UTF-8, and this name is not' init latin "$odd.gml"
+[ ! -e latin ]; result $? "leaves nothing"
+run init "$odd" city.gml
+draw latin.png "$odd/city.yaml" --size 8x8
+rm -r "$odd" "$odd.gml"
+# as many files as may be named
+for i in 0 1 2 3; do for k in 0 1 2 3 4 5 6 7; do printf 'l%d%d.csv, ' $i $k; done; done >list
+printf 'nocturne: 1\ninputs: [city.gml]\nlamps: { files: [%s] }\n' "$(sed 's/, $//' list)" >many.yaml
+printf 'traffic: { tracks: [%s] }\n' "$(sed 's/, $//; s/l/t/g' list)" >>many.yaml
+expect "a recipe that names 64 files" 1 'l00.csv: No such file' render many.yaml -o a.png
 expect "init does not overwrite" 1 'is left alone' init town city.gml
 [ "$(find town | wc -l)" = 2 ]
 result $? "init leaves its recipe alone" "$(ls -a town)"
