@@ -72,8 +72,10 @@ static void sweep(const char *target) {
         if (!is_temporary(e->d_name, target))
             continue;
         int fd = openat(dirfd(dir), e->d_name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-        struct stat st;
-        if (fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) && !flock(fd, LOCK_EX | LOCK_NB))
+        struct stat st, named; /* the name may be that of its writer's next file by now */
+        if (fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) && !flock(fd, LOCK_EX | LOCK_NB) &&
+            !fstatat(dirfd(dir), e->d_name, &named, AT_SYMLINK_NOFOLLOW) && named.st_dev == st.st_dev &&
+            named.st_ino == st.st_ino)
             unlinkat(dirfd(dir), e->d_name, 0);
         if (fd >= 0)
             close(fd);
@@ -148,6 +150,8 @@ fail:
 noc_status output_failed(output *o, noc_log *log) { return fail(o->path, "writing failed", log); }
 
 noc_status output_close(output *o, noc_status status, noc_log *log) {
+    /* It holds the lock until the file has its name: another writer of this target would sweep it away between. */
+    int lock = fcntl(fileno(o->file), F_DUPFD_CLOEXEC, 0);
     /* What is still buffered may be what no longer fits on the disk. A name that is on the disk before the content is
      * would be an empty file after a power cut. EINVAL: the file system has nothing to write through. */
     if (status == NOC_OK && (fflush(o->file) != 0 || (fsync(fileno(o->file)) != 0 && errno != EINVAL)))
@@ -158,6 +162,8 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
         status = fail(o->path, "cannot be written", log);
     if (status != NOC_OK)
         unlink(o->temporary);
+    if (lock >= 0)
+        close(lock);
     output_free(o);
     return status;
 }

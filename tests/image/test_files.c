@@ -7,8 +7,10 @@
 #include <openexr.h>
 #include <fcntl.h>
 #include <png.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 static char folder[] = "/tmp/noc-image-XXXXXX";
 static char warnings[4096];
@@ -350,6 +352,24 @@ static void leftovers_are_swept(void **state) {
     noc_image_destroy(a);
 }
 
+/* Another process that begins the same file again and again takes nothing from under this one. */
+static void writers_of_one_name(void **state) {
+    (void)state;
+    enum { FILES = 400 };
+    output o;
+    pid_t child = fork();
+    for (; !child;)
+        if (!output_open(&o, in_folder("raced.exr"), NULL))
+            output_close(&o, NOC_ERR_CANCELLED, NULL);
+    assert_true(child > 0);
+    int failed = 0;
+    for (int i = 0; i < FILES; i++)
+        failed += output_open(&o, in_folder("raced.exr"), log_) || output_close(&o, NOC_OK, log_);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    assert_int_equal(failed, 0);
+}
+
 static void a_link_is_followed(void **state) {
     (void)state;
     noc_image *a = random_image(2, 2, false);
@@ -454,6 +474,7 @@ int main(void) {
         cmocka_unit_test(a_full_disk_is_reported),
         cmocka_unit_test(an_old_picture_survives_a_failure),
         cmocka_unit_test(leftovers_are_swept),
+        cmocka_unit_test(writers_of_one_name),
         cmocka_unit_test(a_link_is_followed),
         cmocka_unit_test(a_dangling_link_is_followed),
         cmocka_unit_test(paths_are_checked_before),
