@@ -32,6 +32,7 @@ const char *stranger_told(const char *head) {
     static const struct {
         const char *start, *part, *told;
     } known[] = {
+        { "nocturne:", "", "this is a recipe, which stands on the command line, in no other recipe and in no list" },
         { "IESNA", "", PHOTOMETRY("IES") },
         { "", "\nTILT=", PHOTOMETRY("IES") },
         { "<", "<kml", "this is KML, which is not read: convert it to GeoJSON, with ogr2ogr for example" },

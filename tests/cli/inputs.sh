@@ -75,6 +75,7 @@ refused() { # name, part of the message; the file is "stranger"
         test ! -e x.png
     result $? "refused by name: $1" "$(cat err)"
 }
+printf 'nocturne: 1\ninputs: [stranger]\n' >stranger; refused "a recipe that names itself" 'this is a recipe'
 printf 'IESNA:LM-63-2002\r\n[TEST] 1\r\nTILT=NONE\r\n1 1000 1 5 1 1 2 0 0 0\r\n' >stranger; refused IES '(IES)'
 printf 'ACME\r\n1\r\n2\r\n36\r\n10\r\n37\r\n2,5\r\nREPORT\r\n' >stranger; refused EULUMDAT '(EULUMDAT)'
 printf '<?xml version="1.0"?>\n<OpenDRIVE>\n<header revMajor="1"/></OpenDRIVE>' >stranger
