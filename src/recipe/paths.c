@@ -64,8 +64,9 @@ static noc_status take_key(taken_path *t, yaml_node_t *node, size_t index) {
     }
     if (!status && (t->camera ? 1 : 0) + own + view != 1)
         status = recipe_wrong(t->file, node, "a key of a path is where a camera, a view, or an eye and a target say");
-    if (!status && !recipe_is_placed(&key->camera))
-        status = recipe_wrong(t->file, node, "eye and target go together, and crs with them");
+    const char *misplaced = status ? NULL : recipe_misplaced(&key->camera);
+    if (misplaced)
+        status = recipe_wrong(t->file, node, "%s", misplaced);
     const noc_path_key *before = index ? key - 1 : NULL;
     bool told = key->seconds >= 0, told_before = before && before->seconds >= 0;
     if (!status && before && told != told_before && !(told && index == 1)) /* the first is at 0 s without a word */

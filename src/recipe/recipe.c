@@ -178,8 +178,13 @@ noc_status recipe_camera_key(recipe_file *f, noc_camera_params *params, const ya
     return status ? status : recipe_set(f, value, o, params, texts[0]);
 }
 
-bool recipe_is_placed(const noc_camera_params *params) {
-    return !params->eye == !params->target && (params->eye || !params->crs);
+const char *recipe_misplaced(const noc_camera_params *params) {
+    double eye[3], target[3];
+    if (!params->eye != !params->target || (!params->eye && params->crs))
+        return "eye and target go together, and crs with them";
+    bool same = params->eye && noc_text_numbers(params->eye, ',', 3, eye) &&
+                noc_text_numbers(params->target, ',', 3, target) && !memcmp(eye, target, sizeof(eye));
+    return same ? "eye and target are the same place" : NULL;
 }
 
 static noc_status take_camera_key(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
@@ -194,8 +199,9 @@ static noc_status take_camera(void *ctx, const yaml_node_t *key, yaml_node_t *va
     noc_recipe_camera camera = { arena_strdup(&r->arena, recipe_text(key)), noc_camera_default_params() };
     t->camera = &camera;
     noc_status status = recipe_each(t->file, value, "a camera", take_camera_key, t);
-    if (!status && !recipe_is_placed(&camera.params))
-        status = recipe_wrong(t->file, key, "camera %.60s: eye and target go together, and crs with them", camera.name);
+    const char *misplaced = status ? NULL : recipe_misplaced(&camera.params);
+    if (misplaced)
+        status = recipe_wrong(t->file, key, "camera %.60s: %s", recipe_text(key), misplaced);
     if (!status && !(camera.name && array_push(&r->cameras, camera)))
         status = noc_no_memory(t->file->log, t->file->path);
     return status;

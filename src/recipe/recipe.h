@@ -80,7 +80,9 @@ noc_status recipe_set(const recipe_file *f, const yaml_node_t *node, const noc_o
 /* A key of a camera: view, eye, target, crs or fov. what: the camera, for messages; words: all that it may have. */
 noc_status recipe_camera_key(recipe_file *f, noc_camera_params *params, const yaml_node_t *key, yaml_node_t *value,
                              const char *what, const char *const *words, size_t word_count);
-bool recipe_is_placed(const noc_camera_params *params); /* eye and target together, and crs only with them */
+/* What is wrong with where its keys say that a camera stands, NULL for nothing: eye and target go together, crs only
+ * with them, and they are two places. */
+const char *recipe_misplaced(const noc_camera_params *params);
 
 /* ---- paths.c ---- */
 
