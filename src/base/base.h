@@ -44,6 +44,15 @@ bool noc_resize_large(void *array, size_t have, size_t count, size_t size) NOC_M
 void *noc_alloc_pages(size_t size) NOC_MUST_USE;
 void noc_free_pages(void *pages, size_t size); /* NULL is nothing */
 
+/* FNV-1a of a text, 64 bits: the same in every process. Its high bits say little of its last letters: who takes some
+ * of them mixes it first. */
+static inline uint64_t noc_hash_text(const char *text) {
+    uint64_t h = 0xcbf29ce484222325u;
+    for (; *text; text++)
+        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
+    return h;
+}
+
 /* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as
  * it was, when memory is refused.
  *

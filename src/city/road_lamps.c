@@ -39,6 +39,12 @@ static const double heights[GEO_ROAD_CLASSES] = {
     [GEO_ROAD_PATH] = 3 / 4.,      [GEO_ROAD_TRACK] = 1,         [GEO_ROAD_RAIL] = 0,
 };
 
+/* Ways in an order that is their own: the lamps that are one too many are the same in whatever order ways come. */
+typedef struct way_order {
+    uint64_t hash;
+    const geo_road *road;
+} way_order;
+
 typedef struct placing {
     const city_roads *roads;
     const city_road_params *params;
@@ -48,6 +54,8 @@ typedef struct placing {
     bool by_class, no_memory, cancelled, too_many;
     NOC_ARRAY(double) sums; /* of the present way: its length up to each point */
     NOC_ARRAY(city_road_lamp) found;
+    NOC_ARRAY(way_order) ways; /* that are lit */
+    size_t without;            /* of these, ways that are left without lamps */
 } placing;
 
 static uint64_t mix(uint64_t h) {
@@ -56,13 +64,7 @@ static uint64_t mix(uint64_t h) {
     return h ^ h >> 33;
 }
 
-/* FNV-1a: the same in every process. */
-static uint64_t hash_of(const char *text) {
-    uint64_t h = 0xcbf29ce484222325u;
-    for (; *text; text++)
-        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
-    return mix(h);
-}
+static uint64_t hash_of(const char *text) { return mix(noc_hash_text(text)); }
 
 static bool is_lit(const placing *p, const geo_road *road) {
     if (road->cls == GEO_ROAD_RAIL || road->tunnel)
@@ -199,8 +201,6 @@ static int side_of(const geo_road *road) {
 }
 
 static void along_way(placing *p, const geo_road *road) {
-    if (!is_lit(p, road))
-        return;
     if (!measure(p, road)) {
         p->no_memory = true;
         return;
@@ -229,6 +229,34 @@ static void along_way(placing *p, const geo_road *road) {
 }
 
 /* ---- all of them ---- */
+
+/* Pieces of one way have its id: then by where they are. */
+static int by_hash(const void *a, const void *b) {
+    const way_order *x = a, *y = b;
+    if (x->hash != y->hash)
+        return x->hash < y->hash ? -1 : 1;
+    const double *p = x->road->xyz, *q = y->road->xyz;
+    if (p[0] != q[0])
+        return p[0] < q[0] ? -1 : 1;
+    return (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+static void along_all(placing *p) {
+    const noc_progress *progress = p->params->progress;
+    for (size_t i = 0; i < p->roads->count && !p->no_memory; i++) {
+        const geo_road *road = &p->roads->roads[i];
+        if (is_lit(p, road))
+            p->no_memory = !array_push(&p->ways, (way_order){ hash_of(road->id), road });
+    }
+    if (p->ways.len > 1)
+        qsort(p->ways.data, p->ways.len, sizeof(*p->ways.data), by_hash);
+    for (size_t i = 0; i < p->ways.len && !p->no_memory && !p->cancelled; i++) {
+        along_way(p, p->ways.data[i].road);
+        p->without += p->too_many;
+        p->cancelled = i % 256 == 0 && progress && progress->update &&
+                       !progress->update(progress->user, "lamps", (double)i / (double)p->ways.len);
+    }
+}
 
 static bool too_near(const placing *p, const city_road_lamp *a, const city_road_lamp *b) {
     if (a->road == b->road)
@@ -290,19 +318,17 @@ noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city
     p.no_memory = !geo_cells_create(&p.mapped, params->mapped_count + 1, p.reach);
     for (size_t i = 0; i < params->mapped_count && !p.no_memory; i++)
         geo_cells_add(&p.mapped, params->mapped + 2 * i, i);
-    for (size_t i = 0; i < roads->count && !p.no_memory && !p.cancelled; i++) {
-        const noc_progress *progress = params->progress;
-        along_way(&p, &roads->roads[i]);
-        p.cancelled = i % 256 == 0 && progress && progress->update &&
-                      !progress->update(progress->user, "lamps", (double)i / (double)roads->count);
-    }
+    along_all(&p);
     geo_cells_free(&p.mapped);
+    array_free(&p.ways);
     array_free(&p.sums);
     if (!p.no_memory && !p.cancelled)
         thin_out(&p);
     if (p.too_many && !p.no_memory && !p.cancelled)
-        noc_warn(scene->log, "roads of maps have no lamps beyond the first %d: --bbox takes less of the maps",
-                 MOST_LAMPS);
+        noc_warn(scene->log,
+                 "%zu lit roads of maps have no lamps, or not all: %d are the most. --bbox takes less of the "
+                 "maps",
+                 p.without, MOST_LAMPS);
     if (!p.no_memory && !p.cancelled) {
         *lamps = p.found.data;
         *count = p.found.len;

@@ -37,10 +37,7 @@ double city_window_number(uint64_t hash, uint64_t salt) {
 }
 
 building_use city_building_use(const char *id, noc_building_use told, double height, double width) {
-    building_use use = { .hash = 14695981039346656037u };
-    for (; *id; id++)
-        use.hash = (use.hash ^ (unsigned char)*id) * 1099511628211u;
-    use.hash = city_window_hash(use.hash, 0);
+    building_use use = { .hash = city_window_hash(noc_hash_text(id), 0) };
     double offices = height >= HIGH ? OFFICES_HIGH : width >= WIDE ? OFFICES_WIDE : OFFICES_ELSE;
     use.offices = city_window_number(use.hash, 1) < offices;
     use.shops = height >= SHOPS_FROM && city_window_number(use.hash, 2) < SHOPS;

@@ -92,12 +92,7 @@ static uint64_t mix(uint64_t h) {
     return h ^ h >> 32;
 }
 
-static uint64_t hash_text(const char *text) {
-    uint64_t h = 0xcbf29ce484222325u;
-    for (; *text; text++)
-        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
-    return mix(h);
-}
+static uint64_t hash_text(const char *text) { return mix(noc_hash_text(text)); }
 
 void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count) {
     uint64_t sum = mix((uint64_t)cls + 1);
