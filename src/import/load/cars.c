@@ -25,7 +25,7 @@ noc_status track_keep(importer *im, input *in, size_t index, const geo_track *tr
     p.track.seconds = seconds;
     if (!array_push(&im->tracks, p))
         return noc_no_memory(im->log, in->path);
-    return im->tracks.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+    return take_kept(im, in);
 }
 
 /* The user's own. */

@@ -39,7 +39,7 @@ noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footp
     geo_footprint *kept = &im->footprints.data[im->footprints.len - 1].footprint;
     kept->ring_size = sizes;
     kept->xyz = xyz;
-    return im->footprints.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+    return take_kept(im, in);
 }
 
 /* ---- heights ---- */

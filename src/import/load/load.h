@@ -202,6 +202,7 @@ typedef struct importer {
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
+    size_t names_asked; /* bytes of it when take_kept asked last */
     /* progress */
     double bytes_total, bytes_before; /* of all inputs; of those that were taken */
     size_t scene_before;              /* bytes of the scene before the present input */
@@ -441,6 +442,8 @@ noc_status take_part(importer *im, input *in, const load_part *part);
 noc_status take_finish(const taking *t, noc_status status);
 /* Is what waits and what the scene holds, and will hold with so many bytes more, within the limits? Else reported. */
 noc_status take_affords(importer *im, const input *in, size_t more);
+/* The same, each time that so much more waits for the end of the load that it is worth asking. */
+noc_status take_kept(importer *im, const input *in);
 void take_destroy(importer *im);
 int take_material(importer *im, noc_class cls, const char *id); /* of an object's surfaces; < 0: refused, and said */
 

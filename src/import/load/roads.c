@@ -52,7 +52,7 @@ noc_status road_keep(importer *im, input *in, const geo_road *road) {
     if (!xyz || !kept.id || !kept.name || !array_push(&im->roads, kept))
         return noc_no_memory(im->log, in->path);
     memcpy(xyz, road->xyz, bytes);
-    return im->roads.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+    return take_kept(im, in);
 }
 
 static bool update(void *user, const char *what, double done) {

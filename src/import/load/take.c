@@ -74,7 +74,7 @@ static double area_from_above(const part_surface *s) {
 noc_status take_affords(importer *im, const input *in, size_t more) {
     size_t scene = noc_scene_bytes(im->scene) + more, made = scene - NOC_MIN(scene, im->scene_before);
     size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->footprints.cap * sizeof(*im->footprints.data) +
-                     im->roads.cap * sizeof(*im->roads.data) +
+                     im->roads.cap * sizeof(*im->roads.data) + im->tracks.cap * sizeof(*im->tracks.data) +
                      (im->water.xyz.cap + im->green.xyz.cap + im->squares.xyz.cap + im->lots.xyz.cap) * sizeof(double) +
                      (im->water.indices.cap + im->green.indices.cap + im->squares.indices.cap + im->lots.indices.cap) *
                          sizeof(uint32_t) +
@@ -85,6 +85,14 @@ noc_status take_affords(importer *im, const input *in, size_t more) {
         growth.expansion = im->params->max_expansion;
     noc_status status = import_affords(&memory, (double)(scene + waiting), in->path, "the scene with it", im->log);
     return status ? status : import_affords(&growth, (double)made, in->path, "its part of the scene", im->log);
+}
+
+noc_status take_kept(importer *im, const input *in) {
+    enum { ASK = 1 << 20 };
+    if (im->names.bytes - im->names_asked < ASK)
+        return NOC_OK;
+    im->names_asked = im->names.bytes;
+    return take_affords(im, in, 0);
 }
 
 static noc_status take_surface(importer *im, input *in, const char *id, const part_surface *s) {
