@@ -244,6 +244,31 @@ static void test_too_long(void **state) {
     assert_int_equal(scene->stops.len, 0);
 }
 
+/* A car that stands for a day is a few stops, and goes on when it is time. */
+static void test_standing(void **state) {
+    enum { POINTS = 86402 };
+    static double xyz[POINTS][3], seconds[POINTS];
+    const size_t part = POINTS;
+    const geo_track track = { "track", 1, &part, xyz[0], seconds };
+    size_t cars;
+    for (size_t i = 0; i < POINTS; i++) {
+        double y = i == 0 ? -20 : i + 1 == POINTS ? 20 : 0;
+        memcpy(xyz[i], (double[]){ i % 2 ? .01 : 0, y, NAN }, sizeof(xyz[i]));
+        seconds[i] = (double)i;
+    }
+    make_plain();
+    geo_issues *issues = geo_issues_create();
+    city_traffic *traffic = city_traffic_create(scene, &params);
+    assert_int_equal(city_traffic_follow(traffic, &track, issues, &cars), NOC_OK);
+    assert_int_equal(cars, 1);
+    city_traffic_destroy(traffic);
+    geo_issues_destroy(issues);
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    assert_true(scene->stops.len < 16);
+    assert_true(fabs(at(0, .5)[7] + 10) < .1 && fabs(at(0, 1000)[7]) < .1 && fabs(at(0, 86399)[7]) < .1);
+    assert_true(fabs(at(0, 86400.5)[7] - 10) < .1);
+}
+
 static int finish(void **state) {
     noc_scene_destroy(scene);
     return 0;
@@ -253,6 +278,7 @@ int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_lanes),    cmocka_unit_test(test_more_lanes),
                                         cmocka_unit_test(test_chain),    cmocka_unit_test(test_order),
                                         cmocka_unit_test(test_left_out), cmocka_unit_test(test_bridge),
-                                        cmocka_unit_test(test_builtin),  cmocka_unit_test(test_too_long) };
+                                        cmocka_unit_test(test_builtin),  cmocka_unit_test(test_too_long),
+                                        cmocka_unit_test(test_standing) };
     return cmocka_run_group_tests(tests, NULL, finish);
 }

@@ -65,6 +65,7 @@ typedef struct network {
     route_maker route;
     size_t cars;
     size_t too_long; /* lanes without cars */
+    size_t left_out; /* cars beyond MOST_CARS */
     bool refused;
 } network;
 
@@ -282,12 +283,16 @@ static double trace(network *n, int lane) {
 }
 
 static noc_status fill_lane(network *n, uint64_t hash, double expected) {
-    size_t cars = (size_t)NOC_MIN(expected + city_window_number(hash, 1), MOST_CARS);
+    size_t cars = (size_t)NOC_MIN(expected + city_window_number(hash, 1), 1e9), room = MOST_CARS - n->cars;
     if (!n->route.stops.len || !cars)
+        return NOC_OK;
+    size_t some = NOC_MIN(cars, room);
+    n->left_out += cars - some;
+    if (!some)
         return NOC_OK;
     double period = n->route.stops.data[n->route.stops.len - 1].seconds;
     int route = noc_scene_add_route(traffic_scene(n->traffic), n->route.stops.data, n->route.stops.len);
-    for (size_t i = 0; i < cars && route >= 0 && n->cars < MOST_CARS; i++) {
+    for (size_t i = 0; i < some && route >= 0; i++) {
         uint64_t car = city_window_hash(hash, 2 + i);
         double where = ((double)i + .5 + .7 * (city_window_number(car, 2) - .5)) / (double)cars;
         if (!traffic_add_car(n->traffic, route, car, where * period))
@@ -342,6 +347,11 @@ noc_status city_traffic_roads(city_traffic *traffic, const geo_road *roads, size
     if (n.too_long)
         noc_warn(traffic_scene(traffic)->log, "%zu lanes of roads have no cars: they are too long, or too many",
                  n.too_long);
+    if (n.left_out)
+        noc_warn(traffic_scene(traffic)->log,
+                 "%zu cars along roads of maps are left out, for %d are the most: a larger "
+                 "--traffic-spacing asks for fewer",
+                 n.left_out, MOST_CARS);
     *cars = n.cars;
     array_free(&n.edges);
     array_free(&n.meetings);

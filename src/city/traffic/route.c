@@ -7,6 +7,10 @@
 #define SHORTEST 10.0 /* m of a leg that is worth driving */
 #define MARGIN 5.0    /* m outside of the city's extent */
 
+/* m around a stop in which the next but one takes the place of the next: a car that stands is two stops, however often
+ * its track says so, and places along a route are found within a few. */
+#define STANDS 0.05
+
 enum { MOST_STOPS = 2000000, MOST_IN_ALL = 20000000 }; /* of a route: 12000 km; of all tracks, and of all roads */
 
 void route_clear(route_maker *m) {
@@ -33,6 +37,13 @@ static void push(route_maker *m, double x, double y, double seconds, double alon
     m->made++;
 }
 
+static bool stands(const route_maker *m, const double xy[2]) {
+    const noc_scene_stop *last = m->stops.data + m->stops.len - 1;
+    return m->stops.len >= m->leg + 2 &&
+           hypot((double)last->p[0] - last[-1].p[0], (double)last->p[1] - last[-1].p[1]) < STANDS &&
+           hypot(xy[0] - last[-1].p[0], xy[1] - last[-1].p[1]) < STANDS;
+}
+
 void route_point(route_maker *m, const double xy[2], double seconds) {
     if (m->too_long)
         return;
@@ -40,6 +51,13 @@ void route_point(route_maker *m, const double xy[2], double seconds) {
         m->along = 0;
         push(m, xy[0], xy[1], m->seconds, 0, false);
     } else {
+        if (stands(m, xy)) {
+            const noc_scene_stop *before = &m->stops.data[--m->stops.len - 1];
+            m->made--;
+            m->along = before->along;
+            m->xy[0] = before->p[0];
+            m->xy[1] = before->p[1];
+        }
         double from[2] = { m->xy[0], m->xy[1] }, length = hypot(xy[0] - from[0], xy[1] - from[1]);
         int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, MOST_STOPS);
         m->too_long = m->stops.len + (size_t)steps > MOST_STOPS || m->made + (size_t)steps > MOST_IN_ALL;

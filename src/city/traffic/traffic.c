@@ -34,12 +34,7 @@ void city_traffic_destroy(city_traffic *t) {
     free(t);
 }
 
-uint64_t traffic_hash(const char *id, uint32_t seed) {
-    uint64_t hash = 14695981039346656037u;
-    for (; *id; id++)
-        hash = (hash ^ (unsigned char)*id) * 1099511628211u;
-    return city_window_hash(hash, seed);
-}
+uint64_t traffic_hash(const char *id, uint32_t seed) { return city_window_hash(noc_hash_text(id), seed); }
 
 noc_status city_traffic_body(city_traffic *t, const noc_scene *from, const char *name) {
     return traffic_own_models(t->scene, from, name, t->params, &t->models);
