@@ -54,7 +54,7 @@ static void add_cars(noc_scene *s, int group) {
     static const noc_scene_stop stops[] = { { 0, { -5, 0, 0 }, 0 }, { 1, { 5, 0, 0 }, 10 }, { 2, { 5, 5, 0 }, 15 } };
     int model = noc_scene_add_model(s, "car"), route = noc_scene_add_route(s, stops, NOC_COUNT(stops));
     add_mesh(s, (const uint32_t[]){ 0, 1, 4, 1, 5, 4 }, NOC_CLASS_VEHICLE, model, group);
-    FUZZ_REQUIRE(noc_scene_add_car(s, model, route, 0) && noc_scene_add_car(s, model, route, .5));
+    FUZZ_REQUIRE(noc_scene_add_car(s, model, route, 0, 2.6) && noc_scene_add_car(s, model, route, .5, 2.6));
     FUZZ_REQUIRE(!noc_scene_remove_instance(s, 0));
 }
 
