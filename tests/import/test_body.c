@@ -6,13 +6,15 @@
 
 #include <math.h>
 
-static char folder[] = "/tmp/noc-body-XXXXXX", lamps[300], told[1000];
+static char folder[] = "/tmp/noc-body-XXXXXX", lamps[300], told[1000], warned[1000];
 static noc_log *log_;
 static noc_scene *scene;
 
 static void hear(void *user, noc_log_level level, const char *text) {
     if (level == NOC_LOG_ERROR)
         snprintf(told, sizeof(told), "%s", text);
+    if (level == NOC_LOG_WARN)
+        snprintf(warned, sizeof(warned), "%s", text);
 }
 
 static const char *write_file(const char *name, const char *text) {
@@ -104,6 +106,9 @@ static void head(void **state) {
     assert_true(fabs(at[0] - scene->lights.data[0].p[0]) < 1e-5 &&
                 fabs(at[2] - .01 - scene->lights.data[0].p[2]) < 1e-4);
     assert_true(lamp_triangles() > 10);
+    assert_null(strstr(warned, "reaches"));
+    load_well(write_file("head.obj", "o hood\nv -100 0 0\nv 100 0 0\nv 0 0 400\nf 1 2 3\n"), false); /* in mm */
+    assert_non_null(strstr(warned, "head reaches 400 m from where it shines"));
 }
 
 /* The picture's light is the lamp's alone. */

@@ -120,10 +120,22 @@ static bool find_light(const noc_scene *s, double at[3]) {
     return s->lights.len > 0;
 }
 
+#define LARGEST_HEAD 10 /* m from where it shines: our own word, as no head of a street lamp reaches 5 */
+
+static double reach(const noc_scene *s, const noc_scene_mesh *mesh) {
+    double most = 0, p[3];
+    for (size_t i = 3 * mesh->first_triangle; i < 3 * (mesh->first_triangle + mesh->triangle_count); i++) {
+        city_body_corner(s, i, p);
+        most = fmax(most, sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]));
+    }
+    return most;
+}
+
 static noc_status make_model(importer *im, const noc_scene *from, const char *path, city_body *body) {
     const double as_it_is[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     noc_scene *to = im->scene;
     bool any = false;
+    double far = 0;
     noc_status status = NOC_OK;
     body->whole = find_light(from, body->light);
     if (body->whole && !(body->light[2] > 0.1))
@@ -139,10 +151,17 @@ static noc_status make_model(importer *im, const noc_scene *from, const char *pa
             continue;
         int material = city_body_material(to, from, mesh->material, NOC_CLASS_LAMP);
         status = city_body_mesh(to, from, mesh, body->model, material, as_it_is);
+        far = fmax(far, reach(from, mesh));
         any = true;
     }
     if (!status && !any)
         status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the lamp's body has no triangles", path);
+    if (!status && !body->whole && far > LARGEST_HEAD)
+        noc_warn(
+            im->log,
+            "%s: the lamp's head reaches %.3g m from where it shines: it is in metres about 0,0,0, and a whole lamp "
+            "marks its light by a part of that name",
+            path, far);
     return status;
 }
 
