@@ -358,9 +358,12 @@ static void writers_of_one_name(void **state) {
     enum { FILES = 400 };
     output o;
     pid_t child = fork();
-    for (; !child;)
+    while (child == 0) {
         if (!output_open(&o, in_folder("raced.exr"), NULL))
             output_close(&o, NOC_ERR_CANCELLED, NULL);
+        if (getppid() == 1)
+            _exit(0); /* nobody is left to end it */
+    }
     assert_true(child > 0);
     int failed = 0;
     for (int i = 0; i < FILES; i++)
