@@ -304,13 +304,15 @@ static int write_recipe(const init_args *args, const char *folder, const char *p
     noc_status status = print_recipe(args, folder, log, out);
     if (fclose(out) || !text)
         cli_no_memory();
-    if (!status && !cli_interrupted())
-        status = check_text(path, text);
-    if (!status && !cli_interrupted())
-        status = write_text(folder, path, text);
+    if (!status && cli_interrupted())
+        status = NOC_ERR_CANCELLED;
+    status = status ? status : check_text(path, text);
+    status = status ? status : write_text(folder, path, text);
     free(text);
-    if (cli_interrupted())
+    if (status && cli_interrupted()) {
+        cli_error("interrupted: nothing was saved");
         return CLI_INTERRUPTED + cli_interrupted();
+    }
     return status ? CLI_FAILURE : CLI_OK;
 }
 
