@@ -163,6 +163,17 @@ put("overpass", "roads.json", json.dumps({"version": 0.6, "elements": [
     {"type": "way", "id": 3, "nodes": [1, 2, 9], "tags": street},
     {"type": "way", "id": 4, "geometry": [{"lat": 48.1, "lon": 11.5}, None, {"lat": 48.1, "lon": 11.502}],
      "tags": {"railway": "tram", "tunnel": "yes"}}]}))
+corner = lambda x, y: {"lat": 48.1 + y / 1000, "lon": 11.5 + x / 1000}
+put("overpass", "areas.json", json.dumps({"version": 0.6, "elements": [
+    {"type": "node", "id": 1, **corner(0, 0)}, {"type": "node", "id": 2, **corner(1, 0)},
+    {"type": "node", "id": 3, **corner(1, 1)}, {"type": "way", "id": 4, "nodes": [1, 2, 3]},
+    {"type": "way", "id": 5, "nodes": [1, 2, 3, 1], "tags": {"building": "yes", "building:levels": "3"}},
+    {"type": "relation", "id": 6, "members": [
+        {"type": "way", "ref": 4, "role": "outer"},
+        {"type": "way", "ref": 7, "role": "outer", "geometry": [corner(1, 1), corner(0, 0)]},
+        {"type": "way", "ref": 8, "role": "inner", "geometry": [corner(.5, .2), corner(.6, .2), corner(.6, .3),
+                                                                 corner(.5, .2)]}],
+     "tags": {"type": "multipolygon", "natural": "water"}}]}))
 point = lambda x, y, **p: {"type": "Feature", "id": 7, "properties": p,
                            "geometry": {"type": "Point", "coordinates": [x, y]}}
 features = {"type": "FeatureCollection", "name": "lamps",

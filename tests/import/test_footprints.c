@@ -335,6 +335,102 @@ static void test_map_surfaces(void **state) {
     surfaces = NOC_SWITCH_AUTO;
 }
 
+/* A building of two ways around a yard, a lake, a square, a lawn, and a river that is a line. */
+static const char areas_osm[] =
+    "<?xml version='1.0'?><osm version='0.6'>"
+    "<node id='1' lat='48.1' lon='11.5'/><node id='2' lat='48.1' lon='11.5004'/>"
+    "<node id='3' lat='48.1004' lon='11.5004'/><node id='4' lat='48.1004' lon='11.5'/>"
+    "<node id='5' lat='48.1001' lon='11.5001'/><node id='6' lat='48.1001' lon='11.5003'/>"
+    "<node id='7' lat='48.1003' lon='11.5003'/><node id='8' lat='48.1' lon='11.501'/>"
+    "<node id='9' lat='48.1004' lon='11.501'/><node id='10' lat='48.1004' lon='11.5006'/>"
+    "<way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/></way><way id='2'><nd ref='1'/><nd ref='4'/><nd ref='3'/></way>"
+    "<way id='3'><nd ref='5'/><nd ref='6'/><nd ref='7'/><nd ref='5'/></way>"
+    "<way id='4'><nd ref='8'/><nd ref='9'/><nd ref='10'/><nd ref='8'/><tag k='natural' v='water'/></way>"
+    "<way id='5'><nd ref='3'/><nd ref='2'/><nd ref='10'/><nd ref='3'/><tag k='highway' v='pedestrian'/>"
+    "<tag k='area' v='yes'/></way>"
+    "<way id='6'><nd ref='2'/><nd ref='8'/><nd ref='10'/><nd ref='2'/><tag k='leisure' v='park'/></way>"
+    "<way id='7'><nd ref='2'/><nd ref='8'/><tag k='waterway' v='river'/></way>"
+    "<way id='8'><nd ref='2'/><nd ref='8'/><tag k='highway' v='residential'/></way>"
+    "<relation id='9'><member type='way' ref='1' role='outer'/><member type='way' ref='2' role='outer'/>"
+    "<member type='way' ref='3' role='inner'/><tag k='type' v='multipolygon'/><tag k='building' v='yes'/>"
+    "<tag k='height' v='30'/></relation></osm>";
+
+#define NODE(id, lat, lon) "{\"type\":\"node\",\"id\":" id ",\"lat\":" lat ",\"lon\":" lon "},"
+#define WAY(id, nodes, tags) "{\"type\":\"way\",\"id\":" id ",\"nodes\":[" nodes "],\"tags\":{" tags "}}"
+#define MEMBER(id, role) "{\"type\":\"way\",\"ref\":" id ",\"role\":\"" role "\""
+#define AT(lat, lon) "{\"lat\":" lat ",\"lon\":" lon "}"
+#define BUILDING "\"tags\":{\"type\":\"multipolygon\",\"building\":\"yes\",\"height\":\"30\"}}"
+#define RELATION(members) "{\"type\":\"relation\",\"id\":9,\"members\":[" members "]," BUILDING
+#define ANSWER(elements) "{\"version\":0.6,\"generator\":\"Overpass API\",\"elements\":[" elements "]}"
+
+/* clang-format off */
+#define NODES                                                                                                          \
+    NODE("1", "48.1", "11.5") NODE("2", "48.1", "11.5004") NODE("3", "48.1004", "11.5004")                             \
+    NODE("4", "48.1004", "11.5") NODE("5", "48.1001", "11.5001") NODE("6", "48.1001", "11.5003")                       \
+    NODE("7", "48.1003", "11.5003") NODE("8", "48.1", "11.501") NODE("9", "48.1004", "11.501")                         \
+    NODE("10", "48.1004", "11.5006")
+#define WAYS                                                                                                           \
+    WAY("4", "8,9,10,8", "\"natural\":\"water\"") ","                                                                \
+    WAY("5", "3,2,10,3", "\"highway\":\"pedestrian\",\"area\":\"yes\"") ","                                         \
+    WAY("6", "2,8,10,2", "\"leisure\":\"park\"") "," WAY("7", "2,8", "\"waterway\":\"river\"") ","                 \
+    WAY("8", "2,8", "\"highway\":\"residential\"")
+static const char by_ways[] = ANSWER(NODES
+    WAY("1", "1,2,3", "") "," WAY("2", "1,4,3", "") "," WAY("3", "5,6,7,5", "") "," WAYS ","
+    RELATION(MEMBER("1", "outer") "}," MEMBER("2", "outer") "}," MEMBER("3", "inner") "}"));
+static const char by_geometry[] = ANSWER(NODES WAYS ","
+    RELATION(
+    MEMBER("1", "outer") ",\"geometry\":[" AT("48.1", "11.5") "," AT("48.1", "11.5004") ","
+        AT("48.1004", "11.5004") "]},"
+    MEMBER("3", "inner") ",\"geometry\":[" AT("48.1001", "11.5001") "," AT("48.1001", "11.5003") ","
+        AT("48.1003", "11.5003") "," AT("48.1001", "11.5001") "]},"
+    MEMBER("2", "outer") ",\"geometry\":[" AT("48.1", "11.5") "," AT("48.1004", "11.5") ","
+        AT("48.1004", "11.5004") "]}"));
+/* clang-format on */
+
+/* The same from Overpass, whose relations come with their ways, or with the geometry of those. */
+static void test_overpass(void **state) {
+    static const char *const answers[] = { by_ways, by_geometry };
+    static const noc_class classes[] = { NOC_CLASS_WALL,  NOC_CLASS_ROOF, NOC_CLASS_WATER,
+                                         NOC_CLASS_GREEN, NOC_CLASS_ROAD, NOC_CLASS_SIDEWALK };
+    load_well(write_file("areas.osm", areas_osm), NULL);
+    size_t triangles[NOC_COUNT(classes)];
+    seen house = look("relation/9");
+    for (size_t i = 0; i < NOC_COUNT(classes); i++)
+        assert_true((triangles[i] = of_class(classes[i])) > 0);
+    assert_int_equal(house.wall_triangles, 2 * (4 + 3));
+    for (size_t k = 0; k < NOC_COUNT(answers); k++) {
+        load_well(write_file("areas.json", answers[k]), NULL);
+        const noc_report_file *f = noc_report_get_file(report, 0);
+        seen s = look("relation/9");
+        for (size_t i = 0; i < NOC_COUNT(classes); i++)
+            assert_int_equal(of_class(classes[i]), triangles[i]);
+        assert_int_equal(s.wall_triangles, house.wall_triangles);
+        assert_float_equal(s.roof_area, house.roof_area, 1e-2);
+        assert_float_equal(s.high - s.low, 30, 1e-4);
+        assert_true(f->buildings == 1 && f->buildings_unread == 0 && f->roads == 1 && f->line_count == 1);
+    }
+}
+
+/* clang-format off */
+static const char left_out[] = ANSWER(NODES
+    WAY("4", "8,9,77,8", "\"natural\":\"water\"") ","
+    WAY("5", "1,2,3,1", "\"building\":\"yes\"") ","
+    "{\"type\":\"way\",\"id\":6,\"nodes\":[1,2,3,1],\"tags\":{\"landuse\":\"grass\"},"
+        "\"geometry\":[" AT("1", "2") ",null," AT("1", "3") "," AT("1", "2") "]},"
+    RELATION(MEMBER("5", "outer") "}," MEMBER("99", "inner") "}") ","
+    RELATION(MEMBER("1", "outer") ",\"geometry\":[" AT("48.1", "11.5") "," AT("48.1", "11.5004") "]}"));
+/* clang-format on */
+
+/* What cannot be drawn is counted by its reason. */
+static void test_overpass_left_out(void **state) {
+    load_well(write_file("left.json", left_out), NULL);
+    assert_int_equal(line(0, "area without the points of its outline: ask for it with \"out geom\""), 3);
+    assert_int_equal(line(0, "multipolygon whose ways do not close"), 1);
+    assert_true(look("way/5").meshes && !look("relation/9").meshes);
+    assert_true(!of_class(NOC_CLASS_WATER) && !of_class(NOC_CLASS_GREEN));
+    assert_int_equal(noc_report_get_file(report, 0)->buildings_unread, 2);
+}
+
 static int start(void **state) {
     log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
     return !mkdtemp(folder);
@@ -352,9 +448,16 @@ static int finish(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing),       cmocka_unit_test(test_model_and_terrain),
-        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),          cmocka_unit_test(test_units),
-        cmocka_unit_test(test_use),    cmocka_unit_test(test_map_surfaces),
+        cmocka_unit_test(test_blocks),
+        cmocka_unit_test(test_facing),
+        cmocka_unit_test(test_model_and_terrain),
+        cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_osm),
+        cmocka_unit_test(test_units),
+        cmocka_unit_test(test_use),
+        cmocka_unit_test(test_map_surfaces),
+        cmocka_unit_test(test_overpass),
+        cmocka_unit_test(test_overpass_left_out),
     };
     return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
 #else

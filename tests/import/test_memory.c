@@ -239,6 +239,7 @@ static void lamps(void **state) {
                                                                .crs = "EPSG:25832" });
     refuse_each("Overpass", &(import){ { "overpass/nodes.json" } });
     refuse_each("Roads of Overpass", &(import){ { "overpass/roads.json" } });
+    refuse_each("Areas of Overpass", &(import){ { "overpass/areas.json" }, .footprints = true });
 }
 
 static const char car[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"

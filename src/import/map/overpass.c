@@ -1,9 +1,7 @@
 /* Overpass JSON: nodes with lat and lon, ways and relations with a center or a geometry. */
-#include "import/lamps/tags.h"
+#include "import/map/overpass.h"
 #include "import/map/osm_ways.h"
-#include "import/map/roads.h"
 
-#include <jansson.h>
 #include <math.h>
 
 static bool probe(const char *head, size_t size) {
@@ -17,7 +15,7 @@ static bool probe(const char *head, size_t size) {
             strstr(p, "\"relation\""));
 }
 
-static bool number(const json_t *object, const char *key, double *out) {
+bool overpass_number(const json_t *object, const char *key, double *out) {
     const json_t *value = json_object_get(object, key);
     if (!json_is_number(value))
         return false;
@@ -27,15 +25,15 @@ static bool number(const json_t *object, const char *key, double *out) {
 
 /* The place of an element: its own, its center, or the middle of its geometry's box. */
 static bool place_of(const json_t *element, double *lon, double *lat) {
-    if (number(element, "lon", lon) && number(element, "lat", lat))
+    if (overpass_number(element, "lon", lon) && overpass_number(element, "lat", lat))
         return true;
     const json_t *center = json_object_get(element, "center");
-    if (center && number(center, "lon", lon) && number(center, "lat", lat))
+    if (center && overpass_number(center, "lon", lon) && overpass_number(center, "lat", lat))
         return true;
     double w, s, e, n;
     const json_t *box = json_object_get(element, "bounds");
-    if (box && number(box, "minlon", &w) && number(box, "minlat", &s) && number(box, "maxlon", &e) &&
-        number(box, "maxlat", &n)) {
+    if (box && overpass_number(box, "minlon", &w) && overpass_number(box, "minlat", &s) &&
+        overpass_number(box, "maxlon", &e) && overpass_number(box, "maxlat", &n)) {
         *lon = (w + e) / 2;
         *lat = (s + n) / 2;
         return true;
@@ -57,10 +55,12 @@ static bool any_lamp(json_t *elements) {
     return false;
 }
 
-static bool is_node(const json_t *element) {
-    const char *type = json_string_value(json_object_get(element, "type"));
-    return type && !strcmp(type, "node");
+bool overpass_is(const json_t *element, const char *type) {
+    const char *is = json_string_value(json_object_get(element, "type"));
+    return is && !strcmp(is, type);
 }
+
+static bool is_node(const json_t *element) { return overpass_is(element, "node"); }
 
 static void count_way(const json_t *element, geo_features *features) {
     osm_way way = OSM_NEITHER;
@@ -74,13 +74,7 @@ static void count_way(const json_t *element, geo_features *features) {
     features->streets += way == OSM_STREET;
 }
 
-typedef struct tag_list {
-    NOC_ARRAY(lamp_tag) tags;
-    char id[64];
-} tag_list;
-
-/* False: memory was refused. */
-static bool collect_tags(json_t *element, tag_list *list) {
+bool overpass_collect(json_t *element, overpass_tags *list) {
     list->tags.len = 0;
     const char *type = json_string_value(json_object_get(element, "type")), *key;
     json_t *id = json_object_get(element, "id"), *value;
@@ -93,7 +87,7 @@ static bool collect_tags(json_t *element, tag_list *list) {
 }
 
 static noc_status emit(json_t *elements, lamp_writer *w) {
-    tag_list list = { 0 };
+    overpass_tags list = { 0 };
     noc_status status = NOC_OK;
     size_t count = json_array_size(elements);
     for (size_t i = 0; i < count && !status; i++) {
@@ -107,97 +101,13 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
         double xyz[3] = { NAN, NAN, NAN };
         if (!place_of(element, &xyz[0], &xyz[1]))
             xyz[0] = xyz[1] = NAN;
-        status = !collect_tags(element, &list) ? noc_no_memory(w->sink->log, w->place)
-                                               : lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
+        status = !overpass_collect(element, &list) ? noc_no_memory(w->sink->log, w->place)
+                                                   : lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
         if (!status && i % 1024 == 0 && w->sink->progress &&
             !w->sink->progress(w->sink->ctx, (double)i / (double)count))
             status = NOC_ERR_CANCELLED;
     }
     array_free(&list.tags);
-    return status;
-}
-
-/* ---- roads ---- */
-
-typedef struct road_list {
-    lamp_writer *w;
-    json_t *elements;
-    noc_map nodes; /* their numbers among the elements, by id */
-    bool nodes_known;
-    tag_list tags;
-    NOC_ARRAY(double) xyz;
-} road_list;
-
-static bool know_nodes(road_list *list) {
-    size_t count = json_array_size(list->elements);
-    for (size_t i = 0; i < count && !list->nodes_known; i++) {
-        const json_t *element = json_array_get(list->elements, i);
-        char id[32];
-        snprintf(id, sizeof(id), "%" JSON_INTEGER_FORMAT, json_integer_value(json_object_get(element, "id")));
-        if (is_node(element) && !map_put(&list->nodes, id, i, NULL))
-            return false;
-    }
-    list->nodes_known = true;
-    return true;
-}
-
-static bool add_point(road_list *list, const json_t *at) {
-    double xyz[3] = { NAN, NAN, NAN };
-    bool placed = number(at, "lon", &xyz[0]) && number(at, "lat", &xyz[1]);
-    return !placed || array_append(&list->xyz, xyz, (size_t)3);
-}
-
-/* The points of a way: its geometry ("out geom"), else those of its nodes that are there. False: memory was refused. */
-static bool trace(road_list *list, const json_t *way) {
-    const json_t *geometry = json_object_get(way, "geometry"), *nodes = json_object_get(way, "nodes");
-    bool kept = true;
-    list->xyz.len = 0;
-    for (size_t i = 0; i < json_array_size(geometry) && kept; i++)
-        kept = add_point(list, json_array_get(geometry, i));
-    if (json_array_size(geometry) || !json_array_size(nodes))
-        return kept;
-    kept = know_nodes(list);
-    for (size_t i = 0; i < json_array_size(nodes) && kept; i++) {
-        char id[32];
-        uint64_t at;
-        snprintf(id, sizeof(id), "%" JSON_INTEGER_FORMAT, json_integer_value(json_array_get(nodes, i)));
-        kept = !map_get(&list->nodes, id, &at) || add_point(list, json_array_get(list->elements, (size_t)at));
-    }
-    return kept;
-}
-
-static noc_status emit_road(road_list *list, json_t *way) {
-    geo_road road;
-    const char *type = json_string_value(json_object_get(way, "type"));
-    if (!type || strcmp(type, "way") != 0 || !json_object_size(json_object_get(way, "tags")))
-        return NOC_OK;
-    bool kept = collect_tags(way, &list->tags);
-    if (kept && !road_read(list->tags.tags.data, list->tags.tags.len, &road))
-        return NOC_OK;
-    if (!kept || !trace(list, way))
-        return noc_no_memory(list->w->sink->log, list->w->place);
-    if (list->xyz.len < 6) /* "out tags", "out center": it stays unread */
-        return NOC_OK;
-    road.id = list->tags.id;
-    road.point_count = list->xyz.len / 3;
-    road.xyz = list->xyz.data;
-    *(road.cls == GEO_ROAD_RAIL ? &list->w->rails : &list->w->streets) += 1;
-    return list->w->sink->road(list->w->sink->ctx, &road);
-}
-
-static noc_status emit_roads(json_t *elements, lamp_writer *w) {
-    road_list list = { .w = w, .elements = elements };
-    noc_status status = NOC_OK;
-    size_t count = w->sink->road ? json_array_size(elements) : 0;
-    for (size_t i = 0; i < count && !status; i++) {
-        status = emit_road(&list, json_array_get(elements, i));
-        if (!status && i % 1024 == 0 && w->sink->progress && !w->sink->progress(w->sink->ctx, 1))
-            status = NOC_ERR_CANCELLED;
-    }
-    w->seen.streets -= NOC_MIN(w->seen.streets, w->streets);
-    map_free(&list.nodes);
-    array_free(&list.tags.tags);
-    array_free(&list.xyz);
     return status;
 }
 
@@ -248,7 +158,7 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
         if (!status)
             status = emit(elements, &w);
         if (!status)
-            status = emit_roads(elements, &w);
+            status = overpass_shapes(elements, &w);
         if (!status)
             status = lamp_writer_end(&w);
     }
