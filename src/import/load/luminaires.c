@@ -58,6 +58,7 @@ static noc_status check_colour(const char *colour, const char *place, noc_log *l
 
 static noc_status check_rules(const noc_import_params *p, noc_log *log) {
     char text[40];
+    noc_map names = { 0 };
     noc_status status = NOC_OK;
     for (size_t i = 0; i < p->luminaire_count && !status; i++) {
         const noc_luminaire_rule *r = &p->luminaires[i];
@@ -72,10 +73,13 @@ static noc_status check_rules(const noc_import_params *p, noc_log *log) {
         status = status ? status : check_colour(g->colour, place, log);
         if (!status && (!g->name || !*g->name))
             status = noc_error(log, NOC_ERR_ARGUMENT, "%s: it has no name", place);
-        for (size_t k = 0; k < i && !status; k++)
-            if (!strcmp(p->groups[k].name, g->name))
-                status = noc_error(log, NOC_ERR_ARGUMENT, "%s: there are two groups %.60s", place, g->name);
+        bool fresh = true;
+        if (!status && !map_put(&names, g->name, i, &fresh))
+            status = noc_no_memory(log, place);
+        if (!fresh)
+            status = noc_error(log, NOC_ERR_ARGUMENT, "%s: there are two groups %.60s", place, g->name);
     }
+    map_free(&names);
     return status;
 }
 
