@@ -71,6 +71,7 @@ typedef struct geo_object {
     const char *id; /* gml:id, "" if none; valid during the call */
     int lod;        /* taken, -1 if not applicable */
     noc_building_use use;
+    double storeys; /* of a building, above the ground; 0: not told */
 } geo_object;
 
 /* Rings without the repeated last point. Coordinates in the file's CRS, easting northing height order. */

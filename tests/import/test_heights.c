@@ -193,6 +193,7 @@ static void test_units(void **state) {
         { 10, 800, "are heights in centimetres? Times 0.01 it would be 8 m" },
         { 10, 8000, "are heights in millimetres? Times 0.001 it would be 8 m" },
         { 10, .8, "are heights in metres, converted as if they were feet? Times 3.2808 it would be 2.62 m" },
+        { 10, .012, "are heights in kilometres? Times 1000 it would be 12 m" },
         { 10, .25,
           "the median height of a building, of 10, is 0.25 m, which is hardly one: in which unit are heights?" },
     };

@@ -1,8 +1,11 @@
 /* attribute.c: what an object says of itself: its class, function, usage and name, and generic attributes,
  * which carry their names in XML in CityGML 1.0 and 2.0, and as elements in 3.0. */
 #include "import/citygml/citygml.h"
+#include "import/use.h"
 
 #include <stdio.h>
+
+#define MOST_STOREYS 250
 
 #define MOST 256 /* attributes of an object, or of a part of it, that are kept */
 
@@ -73,4 +76,24 @@ void cg_attribute_end(cg_parser *p, const cg_frame *frame) {
     snprintf(value, sizeof(value), "%s%s%s", p->word, *unit ? " " : "", unit);
     if (*p->attribute)
         cg_attribute_add(p, frame->feature, p->attribute, value, true);
+}
+
+/* What a building says of its use goes before what its parts say, functions before usages, and those before classes.
+ * Storeys are those of the building itself; 9999 and the like stand for none. */
+void cg_note_building(cg_parser *p, uint32_t index, const char *key, const char *word) {
+    const cg_feature_type *type = p->object.features.data[index].type;
+    double storeys;
+    if (type->kind != GEO_BUILDING || type->part != CG_PART_BODY || !strcmp(key, "name"))
+        return;
+    if (!strcmp(key, "storeysAboveGround")) {
+        if (index == 0 && noc_parse_double(word, &storeys) && storeys >= 0 && storeys <= MOST_STOREYS)
+            p->object.storeys = storeys;
+        return;
+    }
+    noc_building_use use = building_use_told(key, word);
+    int rank = (index == 0 ? 4 : 0) + (!strcmp(key, "function") ? 3 : !strcmp(key, "usage") ? 2 : 1);
+    if (use == NOC_USE_UNKNOWN || rank <= p->object.use_rank)
+        return;
+    p->object.use = use;
+    p->object.use_rank = rank;
 }

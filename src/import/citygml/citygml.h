@@ -176,6 +176,7 @@ typedef struct cg_object {
     uint32_t point_srs;
     noc_building_use use; /* of a building, by what tells it best: use_rank, 0 where nothing does */
     int use_rank;
+    double storeys;                 /* of a building, above the ground; 0: it does not say */
     bool other_function;            /* a code of the standard's list says that it is something other than a lamp */
     NOC_ARRAY(cg_feature) features; /* the first is the object itself */
     NOC_ARRAY(cg_geometry) geometries;
@@ -394,6 +395,7 @@ void cg_object_free(cg_object *object);
 
 /* attribute.c: what objects say of themselves. */
 bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name); /* false: of no use */
+void cg_note_building(cg_parser *p, uint32_t feature, const char *key, const char *word);
 void cg_attribute_add(cg_parser *p, uint32_t feature, const char *key, const char *value, bool generic);
 void cg_attribute_end(cg_parser *p, const cg_frame *frame); /* of a name or a value */
 /* Not a generic one; NULL if there is none. */

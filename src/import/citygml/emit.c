@@ -140,7 +140,9 @@ static noc_class class_of(const cg_parser *p, const cg_geometry *g) {
 
 static void begin_object(cg_parser *p, int lod) {
     const cg_feature *feature = &p->object.features.data[0];
-    geo_object object = { .kind = feature->type->kind, .id = feature->id, .lod = lod, .use = p->object.use };
+    geo_object object = {
+        .kind = feature->type->kind, .id = feature->id, .lod = lod, .use = p->object.use, .storeys = p->object.storeys
+    };
     p->object_open = true;
     cg_stop(p, p->sink->begin_object(p->sink->ctx, &object));
 }

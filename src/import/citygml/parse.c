@@ -1,6 +1,5 @@
 /* parse.c: from XML events to one top-level object at a time. */
 #include "import/citygml/citygml.h"
-#include "import/use.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -56,6 +55,7 @@ void cg_object_clear(cg_object *object) {
     object->has_point = object->other_function = false;
     object->use = NOC_USE_UNKNOWN;
     object->use_rank = 0;
+    object->storeys = 0;
 }
 
 void cg_object_free(cg_object *object) {
@@ -511,22 +511,9 @@ static void end_implicit(cg_parser *p, const cg_frame *frame) {
     }
 }
 
-/* What a building says of its use goes before what its parts say, functions before usages, and those before classes. */
-static void note_use(cg_parser *p, uint32_t index, const char *key, const char *word) {
-    const cg_feature_type *type = p->object.features.data[index].type;
-    if (type->kind != GEO_BUILDING || type->part != CG_PART_BODY || !strcmp(key, "name"))
-        return;
-    noc_building_use use = building_use_told(key, word);
-    int rank = (index == 0 ? 4 : 0) + (!strcmp(key, "function") ? 3 : !strcmp(key, "usage") ? 2 : 1);
-    if (use == NOC_USE_UNKNOWN || rank <= p->object.use_rank)
-        return;
-    p->object.use = use;
-    p->object.use_rank = rank;
-}
-
 void cg_word_add(cg_parser *p, uint32_t index, const char *key, const char *word) {
     cg_feature *feature = &p->object.features.data[index];
-    note_use(p, index, key, word);
+    cg_note_building(p, index, key, word);
     if (says_of_itself(p, index))
         cg_attribute_add(p, index, key, word, false);
     bool furniture = feature->type->kind == GEO_FURNITURE;

@@ -116,6 +116,7 @@ typedef struct object_now {
     double lo[3], hi[3];
     size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
     noc_building_use use;
+    double storeys;
 } object_now;
 
 typedef struct object_record {

@@ -97,6 +97,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
         status = noc_no_memory(r->log, r->in->path);
     r->now.kind = object->kind;
     r->now.use = object->use;
+    r->now.storeys = object->storeys;
     r->object_lod = object->lod;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
