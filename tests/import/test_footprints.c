@@ -10,6 +10,7 @@
 #if NOC_HAVE_GDAL
 
 static char folder[] = "/tmp/noc-footprints-XXXXXX";
+#include "../folder.h"
 static noc_log *log_;
 static noc_scene *scene;
 static noc_report *report;
@@ -19,18 +20,6 @@ static void hear(void *user, noc_log_level level, const char *text) {
     size_t n = strlen(told);
     if (level == NOC_LOG_WARN)
         snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
-
-static const char *write_file(const char *name, const char *text) {
-    static char paths[4][300];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-    return path;
 }
 
 static void forget(void) {
@@ -437,11 +426,9 @@ static int start(void **state) {
 }
 
 static int finish(void **state) {
-    char command[100];
     forget();
     noc_log_destroy(log_);
-    snprintf(command, sizeof(command), "rm -r %s", folder);
-    return system(command);
+    return remove_folder();
 }
 #endif
 

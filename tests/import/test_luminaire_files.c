@@ -6,19 +6,7 @@
 #include <unistd.h>
 
 static char folder[] = "/tmp/noc-lamp-files-XXXXXX";
-
-static const char *in_folder(const char *name) {
-    static char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    return path;
-}
-
-static void write_file(const char *name, const char *text) {
-    FILE *f = fopen(in_folder(name), "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-}
+#include "../folder.h"
 
 static int start(void **state) {
     (void)state;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 static char folder[] = "/tmp/noc-luminaires-XXXXXX";
+#include "../folder.h"
 static noc_log *log_;
 static char told[2000];
 
@@ -15,21 +16,6 @@ static void keep(void *user, noc_log_level level, const char *text) {
     size_t n = strlen(told);
     if (level <= NOC_LOG_WARN)
         snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
-
-static const char *in_folder(const char *name) {
-    static char paths[8][300];
-    static int next;
-    char *path = paths[next++ % 8];
-    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
-    return path;
-}
-
-static void write_file(const char *name, const char *text) {
-    FILE *f = fopen(in_folder(name), "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
 }
 
 /* Six lamps, 20 m apart. */

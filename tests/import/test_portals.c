@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 static char folder[] = "/tmp/noc-portals-XXXXXX";
+#include "../folder.h"
 static char errors[2000], warnings[4000];
 
 static void hear(void *user, noc_log_level level, const char *text) {
@@ -17,19 +18,6 @@ static void hear(void *user, noc_log_level level, const char *text) {
     size_t room = level == NOC_LOG_ERROR ? sizeof(errors) : sizeof(warnings), n = strlen(to);
     if (level <= NOC_LOG_WARN)
         snprintf(to + n, room - n, "%s\n", text);
-}
-
-static char *in_folder(const char *name) {
-    static char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    return path;
-}
-
-static void write_text(const char *name, const char *text) {
-    FILE *f = fopen(in_folder(name), "wb");
-    assert_non_null(f);
-    fputs(text, f);
-    assert_int_equal(fclose(f), 0);
 }
 
 static void copy_recipe(const char *name) {
@@ -41,7 +29,7 @@ static void copy_recipe(const char *name) {
     size_t n = fread(text, 1, sizeof(text) - 1, f);
     fclose(f);
     text[n] = 0;
-    write_text(name, text);
+    write_file(name, text);
 }
 
 /* A house of 20 m by 10 m and 12 m, its corner at (x, y), without a word on its CRS or with one. Tuples are (y, x)
@@ -70,7 +58,7 @@ static void write_house(const char *name, const char *crs, double x, double y, b
     }
     snprintf(text + n, sizeof(text) - n,
              "</g:CompositeSurface></g:exterior></g:Solid></b:lod2Solid></b:Building></cityObjectMember></CityModel>");
-    write_text(name, text);
+    write_file(name, text);
 }
 
 /* So low that it has no arm: its light is over its place. */
@@ -80,7 +68,7 @@ static void write_lamp(const char *name, double lon, double lat) {
              "{\"version\":0.6,\"elements\":[{\"type\":\"node\",\"id\":1,\"lat\":%.9f,\"lon\":%.9f,"
              "\"tags\":{\"highway\":\"street_lamp\",\"height\":\"3\"}}]}",
              lat, lon);
-    write_text(name, text);
+    write_file(name, text);
 }
 
 static noc_log *told; /* for all scenes; it outlives them */

@@ -10,21 +10,10 @@
 #if NOC_HAVE_GDAL
 
 static char folder[] = "/tmp/noc-road-lamps-XXXXXX";
+#include "../folder.h"
 static noc_log *log_;
 static noc_scene *scene;
 static noc_report *report;
-
-static const char *write_file(const char *name, const char *text) {
-    static char paths[4][300];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-    return path;
-}
 
 static void forget(void) {
     noc_report_destroy(report);
@@ -187,9 +176,7 @@ static int start(void **state) {
 static int finish(void **state) {
     forget();
     noc_log_destroy(log_);
-    char command[100];
-    snprintf(command, sizeof(command), "rm -r %s", folder);
-    return system(command);
+    return remove_folder();
 }
 
 int main(void) {

@@ -176,7 +176,7 @@ static void wrong_edits_are_told(void **unused) {
     char *key = state_of(s).key, before[NOC_CONTENT_KEY];
     memcpy(before, key, sizeof(before));
     noc_material m = s->materials.data[WALL], bad = m;
-    noc_light lamp = lamp_at(0), spot = spot_at(0);
+    noc_light lamp = lamp_at(0);
     noc_mesh mesh = { .material = DARK, .model = CAR };
     double good[12], t[12];
     place(0, 1, 0, good);
@@ -243,7 +243,17 @@ static void wrong_edits_are_told(void **unused) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     assert_int_equal(s->versions.commits, 0);
     assert_string_equal(state_of(s).key, before);
-    /* of what the same transaction removes they do nothing */
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+    (void)unused;
+}
+
+/* Of what the same transaction removes they do nothing. */
+static void edits_of_what_is_removed(void **unused) {
+    noc_scene *s = made(NULL, NOTHING);
+    noc_light spot = spot_at(0);
+    double good[12];
+    place(0, 1, 0, good);
     assert_int_equal(noc_scene_remove_light(s, SPOT), NOC_OK);
     assert_int_equal(noc_scene_move_light(s, SPOT, &spot), NOC_OK);
     assert_int_equal(noc_scene_remove_light(s, SPOT), NOC_OK);
@@ -258,7 +268,6 @@ static void wrong_edits_are_told(void **unused) {
     assert_int_equal(info.instances, 1);
     assert_int_equal(info.lights_by_kind[NOC_LIGHT_SPOT], 0);
     noc_scene_destroy(s);
-    noc_log_destroy(log);
     (void)unused;
 }
 
@@ -488,6 +497,7 @@ int main(void) {
                                         cmocka_unit_test(refused_memory_changes_nothing),
                                         cmocka_unit_test(versions_count_what_changed),
                                         cmocka_unit_test(wrong_edits_are_told),
+                                        cmocka_unit_test(edits_of_what_is_removed),
                                         cmocka_unit_test(numbers_are_told),
                                         cmocka_unit_test(frames_see_whole_transactions),
                                         cmocka_unit_test(bounds_shrink_with_the_first_mesh),
