@@ -25,6 +25,14 @@ typedef enum noc_lamp_default {
 /* false and true are OFF and ON */
 typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch;
 
+/* What a material that inputs name (noc_scene_find_material) is made of. What is negative stays as its file has it. */
+typedef struct noc_named_material {
+    const char *name;
+    float albedo[3]; /* in place of an image, too */
+    float f0, roughness;
+    float metalness; /* noc_material_metal, of what the others make of it */
+} noc_named_material;
+
 #define NOC_TEXTS 32
 
 /* An option that may be given several times. The texts are the caller's, and stay as long as the params are used. */
@@ -139,6 +147,10 @@ typedef struct noc_import_params {
      * walls and roofs of real cities vary between; not owned; default none. Emission is not read */
     const noc_material *materials;
     size_t material_count;
+    /* The same of those that inputs name, after the former; one that no input names is warned of, with those that there
+     * are. Not owned; default none */
+    const noc_named_material *named_materials;
+    size_t named_material_count;
     /* Rules for lamps, and groups of lights, in their order; not owned; default none */
     const noc_luminaire_rule *luminaires;
     size_t luminaire_count;

@@ -18,6 +18,8 @@
  *       light: on                   # --environment-light
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
+ *     materials-by-name:            # as the inputs name them: noc_scene_find_material
+ *       steel_dark: { metalness: 1, roughness: 0.3 }
  *     luminaires:                   # rules for lamps: nocturne/luminaire.h
  *       - { match: { lamp_type: "LED*", watts: ">= 60" }, profile: road.ies, kelvin: 4000 }
  *     groups:                       # of lights, by name
@@ -65,6 +67,8 @@ typedef struct noc_recipe_info {
     const noc_recipe_path *paths; /* in the file's order */
     size_t material_count;
     const noc_material *materials; /* for noc_import_params.materials: of one class each, the rest its defaults */
+    size_t named_material_count;
+    const noc_named_material *named_materials; /* for noc_import_params */
     size_t luminaire_count, group_count;
     const noc_luminaire_rule *luminaires; /* for noc_import_params, in the file's order */
     const noc_group_rule *groups;
@@ -84,7 +88,8 @@ NOC_API void noc_recipe_destroy(noc_recipe *recipe); /* NULL is allowed */
 
 NOC_API const noc_recipe_info *noc_recipe_get_info(const noc_recipe *recipe);
 
-/* Sets what params take as lists to the recipe's: materials, luminaires, groups. NULL for either changes nothing. */
+/* Sets what params take as lists to the recipe's: materials, those by name, luminaires, groups. NULL for either changes
+ * nothing. */
 NOC_API void noc_recipe_lists(const noc_recipe *recipe, noc_import_params *params);
 
 /* The options that the recipe says, in its order; NULL beyond the last. They are rows of the tables of

@@ -63,6 +63,11 @@ NOC_API noc_material noc_class_material(noc_class cls);
  * and ground; at run time by noc_scene_set_class_material. NULL is noc_class_material(NOC_CLASS_OTHER), wet. */
 NOC_API noc_material noc_material_wet(const noc_material *dry);
 
+/* The same surface as a metal to that share, 0..1: f0 goes from 0.04, that of glass, paint and stone, to the luminance
+ * of the albedo, which goes to 0, as glTF has it; one lobe has no colour. NULL is noc_class_material(NOC_CLASS_OTHER).
+ */
+NOC_API noc_material noc_material_metal(const noc_material *material, float metalness);
+
 /* What is seen beyond the edges of an image. */
 typedef enum noc_wrap {
     NOC_WRAP_REPEAT, /* the image again */
@@ -200,6 +205,18 @@ NOC_API noc_status noc_scene_commit(noc_scene *scene);
  * where it shines: else NOC_ERR_ARGUMENT. Closures (NOC_CLASS_CLOSURE) stay such, and nothing else becomes one. The
  * materials of a transaction are set before its other edits. */
 NOC_API noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *to);
+/* Gives a material a name, by which it is found, in place of the one that it has; copied, NULL: none. Materials may
+ * share one: an input makes several of what its file calls one, for each class, and with an image and without. It is
+ * there at once. For the thread that edits. */
+NOC_API noc_status noc_scene_name_material(noc_scene *scene, int material, const char *name);
+/* The first material of that name from index `from` on; -1: there is none. Those of inputs have the names that files
+ * give them: X3DMaterial's gml:id in CityGML, "name" in CityJSON and glTF, newmtl in an OBJ. So all of a name are
+ *
+ *     for (int i = -1; (i = noc_scene_find_material(scene, "brick", i + 1)) >= 0;) */
+NOC_API int noc_scene_find_material(const noc_scene *scene, const char *name, int from);
+/* A material as it is since the last commit, to be changed and set. *name (may be NULL): its own, which belongs to the
+ * scene; NULL where it has none. NOC_ERR_ARGUMENT after reporting that there is none of this index. */
+NOC_API noc_status noc_scene_get_material(const noc_scene *scene, int material, noc_material *out, const char **name);
 /* Albedo, f0, roughness and texture of all materials of that class, also of those added in the transaction. */
 NOC_API noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *to);
 /* Emission of a light by its index, an instance's too, in the light's unit; 0: out. Its group's scale comes on top. */

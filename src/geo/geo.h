@@ -87,6 +87,7 @@ typedef struct geo_polygon {
 
 /* What a file says of how surfaces look. */
 typedef struct geo_appearance {
+    const char *name;  /* that the file gives its material; NULL: none */
     const char *image; /* file's name, as the file that is read has it; NULL: none */
     noc_wrap wrap;
     bool coloured; /* albedo is told */

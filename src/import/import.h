@@ -92,8 +92,9 @@ typedef struct mesh_parts {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
-    /* image: that it looks like where a mesh has places in it; NULL: none */
-    noc_status (*material)(void *ctx, const noc_material *material, const mesh_image *image, int *index);
+    /* name: NULL: none. image: that it looks like where a mesh has places in it; NULL: none */
+    noc_status (*material)(void *ctx, const noc_material *material, const char *name, const mesh_image *image,
+                           int *index);
     /* the mesh's, as the file has them: may be moved */
     noc_status (*mesh)(void *ctx, noc_mesh *mesh, double *positions);
 } mesh_parts;

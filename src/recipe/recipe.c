@@ -30,7 +30,7 @@ typedef struct taken {
     recipe_file *file;
     const section *section;    /* NULL: the top */
     noc_recipe_camera *camera; /* that is read */
-    noc_material *material;
+    noc_named_material *material;
     yaml_node_t *paths; /* taken last: they name cameras */
 } taken;
 
@@ -60,8 +60,8 @@ noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const ch
 }
 
 static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
-    static const char *const others[] = { "nocturne", "name",  "inputs",     "preset", "materials",
-                                          "cameras",  "paths", "luminaires", "groups" };
+    static const char *const others[] = { "nocturne",          "name",    "inputs", "preset",     "materials",
+                                          "materials-by-name", "cameras", "paths",  "luminaires", "groups" };
     const char *words[256];
     size_t count = 0, prefix = t->section ? strlen(t->section->prefix) : 0;
     for (size_t i = 0; i < NOC_COUNT(tables); i++)
@@ -218,11 +218,13 @@ static noc_status take_number(recipe_file *f, yaml_node_t *node, const char *key
     return NOC_OK;
 }
 
+#define UNTOLD (-1e30f) /* noc_named_material: a negative number that nobody writes */
+
 static noc_status take_material_key(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
     taken *t = ctx;
     recipe_file *f = t->file;
     const char *name = recipe_text(key);
-    noc_material *m = t->material;
+    noc_named_material *m = t->material;
     noc_status status = NOC_OK;
     if (!strcmp(name, "albedo") && value->type == YAML_SCALAR_NODE) {
         status = take_number(f, value, name, &m->albedo[0]);
@@ -236,15 +238,26 @@ static noc_status take_material_key(void *ctx, const yaml_node_t *key, yaml_node
         status = take_number(f, value, name, &m->f0);
     } else if (!strcmp(name, "roughness")) {
         status = take_number(f, value, name, &m->roughness);
+    } else if (!strcmp(name, "metalness")) {
+        status = take_number(f, value, name, &m->metalness);
     } else {
-        static const char *const words[] = { "albedo", "f0", "roughness" };
+        static const char *const words[] = { "albedo", "f0", "roughness", "metalness" };
         return recipe_unknown(f, key, "a material", words, NOC_COUNT(words));
     }
-    bool ok = m->f0 >= 0 && m->f0 <= 1 && m->roughness >= .05f && m->roughness <= 1;
-    for (int i = 0; i < 3; i++)
-        ok = ok && m->albedo[i] >= 0 && m->albedo[i] <= 1;
-    return status || ok ? status : recipe_wrong(f, value, "%s: albedo and f0 are 0 to 1, roughness .05 to 1", name);
+    const float told[] = { m->albedo[0], m->albedo[1], m->albedo[2], m->f0, m->metalness, m->roughness };
+    bool ok = true;
+    for (size_t i = 0; i < NOC_COUNT(told); i++)
+        ok = ok && (told[i] == UNTOLD || (told[i] >= (i == 5 ? .05f : 0) && told[i] <= 1));
+    if (!status && !ok)
+        return recipe_wrong(f, value, "%s: albedo, f0 and metalness are 0 to 1, roughness .05 to 1", name);
+    if (!status && m->f0 != UNTOLD && m->metalness != UNTOLD)
+        return recipe_wrong(f, value, "%s: f0 and metalness tell the same thing", name);
+    return status;
 }
+
+static const noc_named_material untold_material = {
+    .albedo = { UNTOLD, UNTOLD, UNTOLD }, .f0 = UNTOLD, .roughness = UNTOLD, .metalness = UNTOLD
+};
 
 static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
     taken *t = ctx;
@@ -258,9 +271,28 @@ static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *
     if (cls < 0)
         return recipe_unknown(t->file, key, "materials, whose keys are classes", words, NOC_CLASS_COUNT);
     noc_material material = noc_class_material((noc_class)cls);
-    t->material = &material;
+    noc_named_material told = untold_material;
+    t->material = &told;
     noc_status status = recipe_each(t->file, value, "a material", take_material_key, t);
+    if (told.albedo[0] != UNTOLD)
+        memcpy(material.albedo, told.albedo, sizeof(material.albedo));
+    material.f0 = told.f0 != UNTOLD ? told.f0 : material.f0;
+    material.roughness = told.roughness != UNTOLD ? told.roughness : material.roughness;
+    if (told.metalness != UNTOLD)
+        material = noc_material_metal(&material, told.metalness);
     return status || array_push(&r->materials, material) ? status : noc_no_memory(t->file->log, t->file->path);
+}
+
+static noc_status take_named_material(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
+    taken *t = ctx;
+    noc_recipe *r = t->file->recipe;
+    noc_named_material told = untold_material;
+    t->material = &told;
+    noc_status status = recipe_each(t->file, value, "a material", take_material_key, t);
+    if (status)
+        return status;
+    told.name = arena_strdup(&r->arena, recipe_text(key));
+    return told.name && array_push(&r->named_materials, told) ? NOC_OK : noc_no_memory(t->file->log, t->file->path);
 }
 
 /* ---- the top ---- */
@@ -313,6 +345,8 @@ static noc_status take_top(void *ctx, const yaml_node_t *key, yaml_node_t *value
         return take_preset(f, value);
     if (!strcmp(name, "materials"))
         return recipe_each(f, value, "materials", take_material, t);
+    if (!strcmp(name, "materials-by-name"))
+        return recipe_each(f, value, "materials-by-name", take_named_material, t);
     if (!strcmp(name, "cameras"))
         return recipe_each(f, value, "cameras", take_camera, t);
     if (!strcmp(name, "paths")) {
@@ -384,6 +418,8 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     info->path_count = f.recipe->paths.len;
     info->materials = f.recipe->materials.data;
     info->material_count = f.recipe->materials.len;
+    info->named_materials = f.recipe->named_materials.data;
+    info->named_material_count = f.recipe->named_materials.len;
     info->luminaires = f.recipe->luminaires.data;
     info->luminaire_count = f.recipe->luminaires.len;
     info->groups = f.recipe->groups.data;
@@ -400,6 +436,7 @@ void noc_recipe_destroy(noc_recipe *recipe) {
     array_free(&recipe->cameras);
     array_free(&recipe->paths);
     array_free(&recipe->materials);
+    array_free(&recipe->named_materials);
     array_free(&recipe->luminaires);
     array_free(&recipe->groups);
     arena_free(&recipe->arena);
@@ -416,6 +453,8 @@ void noc_recipe_lists(const noc_recipe *recipe, noc_import_params *params) {
         return;
     params->materials = recipe->info.materials;
     params->material_count = recipe->info.material_count;
+    params->named_materials = recipe->info.named_materials;
+    params->named_material_count = recipe->info.named_material_count;
     params->luminaires = recipe->info.luminaires;
     params->luminaire_count = recipe->info.luminaire_count;
     params->groups = recipe->info.groups;

@@ -26,6 +26,7 @@ struct noc_recipe {
     NOC_ARRAY(noc_recipe_camera) cameras;
     NOC_ARRAY(noc_recipe_path) paths;
     NOC_ARRAY(noc_material) materials;
+    NOC_ARRAY(noc_named_material) named_materials;
     NOC_ARRAY(noc_luminaire_rule) luminaires;
     NOC_ARRAY(noc_group_rule) groups;
 };

@@ -34,6 +34,26 @@ void noc_keep_materials(noct_writer *w, const noc_scene *s) {
         noct_put(w, &k, sizeof(k));
     }
     noct_end(w);
+    if (!s->material_names.len)
+        return;
+    noct_begin(w, "matnames");
+    for (size_t i = 0; i < s->material_names.len; i++)
+        noct_put_u32(w, noct_name(w, s->material_names.data[i]));
+    noct_end(w);
+}
+
+static noc_status kept_names(noct_file *f, noc_scene *s) {
+    size_t count;
+    const uint32_t *name = noct_array(f, "matnames", sizeof(*name), &count);
+    if (f->status)
+        return f->status;
+    if (count > s->materials.len)
+        return noct_wrong(f, "it has %zu names of materials", count);
+    if (!array_reserve(&s->material_names, count))
+        return noct_no_memory(f);
+    for (size_t i = 0; i < count; i++)
+        s->material_names.data[s->material_names.len++] = noct_name_at(f, name[i]);
+    return f->status;
 }
 
 noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
@@ -52,7 +72,7 @@ noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
         s->material_records.data[s->material_records.len++] = noc_material_record_of(&m);
         s->material_uses.data[s->material_uses.len++] = k[i].of_lights ? 0 : NOC_NOT_OF_LIGHTS;
     }
-    return NOC_OK;
+    return kept_names(f, s);
 }
 
 /* ---- what was said of classes ---- */

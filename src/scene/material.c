@@ -54,6 +54,17 @@ noc_material noc_material_wet(const noc_material *dry) {
     return m;
 }
 
+noc_material noc_material_metal(const noc_material *material, float metalness) {
+    const float dielectric = 0.04f;
+    noc_material m = material ? *material : noc_class_material(NOC_CLASS_OTHER);
+    float share = metalness >= 0 ? NOC_MIN(metalness, 1) : 0; /* NaN becomes 0 */
+    float luminance = 0.2126f * m.albedo[0] + 0.7152f * m.albedo[1] + 0.0722f * m.albedo[2];
+    m.f0 = dielectric + share * (luminance - dielectric);
+    for (int i = 0; i < 3; i++)
+        m.albedo[i] = NOC_MIN(m.albedo[i] * (1 - share), 1 - m.f0);
+    return m;
+}
+
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
 const char *noc_material_fault(const noc_scene *scene, const noc_material *m) {
@@ -105,6 +116,50 @@ int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
         return add_material(scene, m, NOC_NOT_OF_LIGHTS);
     noc_null(scene ? scene->log : NULL, __func__);
     return -1;
+}
+
+noc_status noc_scene_name_material(noc_scene *scene, int material, const char *name) {
+    if (!scene)
+        return noc_null(NULL, __func__);
+    if (scene->no_memory)
+        return NOC_ERR_MEMORY;
+    if (material < 0 || (size_t)material >= noc_scene_material_count(scene))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "material %d: there is no such material", material);
+    const char *kept = NULL;
+    size_t before = scene->material_names.len;
+    if (!noc_scene_keep_name(scene, name, &kept))
+        return NOC_ERR_MEMORY;
+    if ((size_t)material >= before) {
+        if (!array_reserve(&scene->material_names, (size_t)material + 1)) {
+            noc_scene_out_of_memory(scene);
+            return NOC_ERR_MEMORY;
+        }
+        for (size_t i = before; i <= (size_t)material; i++)
+            scene->material_names.data[i] = NULL;
+        scene->material_names.len = (size_t)material + 1;
+    }
+    scene->material_names.data[material] = kept;
+    return NOC_OK;
+}
+
+int noc_scene_find_material(const noc_scene *scene, const char *name, int from) {
+    for (size_t i = (size_t)NOC_MAX(from, 0); scene && name && i < scene->material_names.len; i++)
+        if (scene->material_names.data[i] && !strcmp(scene->material_names.data[i], name))
+            return (int)i;
+    return -1;
+}
+
+noc_status noc_scene_get_material(const noc_scene *scene, int material, noc_material *out, const char **name) {
+    if (!scene || !out)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    *out = (noc_material){ 0 };
+    if (material < 0 || (size_t)material >= scene->materials.len)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT,
+                         "material %d: the scene has no such material, or it is not committed yet", material);
+    *out = scene->materials.data[material];
+    if (name)
+        *name = (size_t)material < scene->material_names.len ? scene->material_names.data[material] : NULL;
+    return NOC_OK;
 }
 
 int noc_scene_add_light_material(noc_scene *scene, const noc_material *m) {

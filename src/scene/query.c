@@ -15,7 +15,7 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->texels.cap * sizeof(uint32_t) + (s->environment ? s->environment->bytes : 0) +
            s->instances.cap * sizeof(noc_scene_instance) + s->stops.cap * sizeof(noc_scene_stop) +
            s->routes.cap * sizeof(noc_scene_route) + s->cars.cap * sizeof(noc_scene_car) +
-           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
+           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap + s->material_names.cap * sizeof(char *);
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {

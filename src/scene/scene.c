@@ -63,6 +63,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->materials);
     array_free(&scene->material_records);
     array_free(&scene->material_uses);
+    array_free(&scene->material_names);
     array_free(&scene->lights);
     array_free(&scene->light_names);
     array_free(&scene->light_made);

@@ -229,6 +229,7 @@ struct noc_scene {
     NOC_ARRAY(float) uv; /* 2 a vertex of the meshes that have a place in an image */
     NOC_ARRAY(noc_material) materials;
     NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
+    NOC_ARRAY(const char *) material_names;          /* of the first of them; only who edits looks at it */
     NOC_ARRAY(uint32_t) material_uses;               /* parallel: published meshes of it, or NOC_NOT_OF_LIGHTS */
     NOC_ARRAY(noc_light_record) lights;              /* data is 64-byte aligned after commit */
     NOC_ARRAY(const char *) light_names;             /* parallel to lights, entries may be NULL */

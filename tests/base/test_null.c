@@ -82,6 +82,10 @@ static noc_camera camera;
     P(0, noc_scene_set_group(NULL, 1, (float[3]){ 0 }) == NOC_ERR_ARGUMENT)                                            \
     P(0, noc_scene_set_group(scene, 1, NULL) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_colour_group(NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(noc_material_metal(NULL, 1), true)                                                                               \
+    P(0, noc_scene_name_material(NULL, 0, "a") == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_scene_find_material(NULL, "a", 0) == -1 && noc_scene_find_material(scene, NULL, 0) == -1)                 \
+    P(0, noc_scene_get_material(NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                              \
     P(0, noc_scene_find_group(NULL, "lamps") == 0 && noc_scene_find_group(scene, NULL) == 0)                           \
     P(0, noc_scene_groups(NULL, NULL, 1) == 0 && noc_scene_groups(scene, NULL, 1) > 0)                                 \
     P(0, noc_scene_say_group(NULL, 1, "off") == NOC_ERR_ARGUMENT)                                                      \

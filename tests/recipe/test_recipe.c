@@ -282,7 +282,7 @@ static const struct {
     { HEAD "materials: {wall: {albdo: 0}}\n", 3, "no key albdo in a material; is it albedo?" },
     { HEAD "materials: {wall: {albedo: [1, 2]}}\n", 3, "a list of 3 numbers" },
     { HEAD "materials: {wall: {albedo: [1, 0, x]}}\n", 3, "entry 3 is no number" },
-    { HEAD "materials: {wall: {albedo: 1.5}}\n", 3, "albedo and f0 are 0 to 1" },
+    { HEAD "materials: {wall: {albedo: 1.5}}\n", 3, "albedo, f0 and metalness are 0 to 1" },
     { HEAD "materials: {wall: {roughness: 0}}\n", 3, "roughness .05 to 1" },
     { HEAD "luminaires: {kelvin: 3}\n", 3, "luminaires is a list of rules" },
     { HEAD "luminaires:\n- {kelvin: 3000}\n- {kelwin: 3}\n", 5, "no key kelwin in a luminaire; is it kelvin?" },

@@ -89,6 +89,13 @@ static const char *attribute(const XML_Char **list, const char *name) {
     return NULL;
 }
 
+static const char *gml_id(const XML_Char **list) {
+    for (; *list; list += 2)
+        if (!strncmp(list[0], "http://www.opengis.net/gml", 26) && !strcmp(cg_local_name(list[0]), "id"))
+            return list[1];
+    return NULL;
+}
+
 /* An id without what is around it; NULL where it leads out of the file. */
 static char *trim_reference(char *text) {
     char *end = text + strlen(text);
@@ -111,6 +118,9 @@ static void on_start(void *user, const XML_Char *name, const XML_Char **list) {
                          .diffuse = { 0.8, 0.8, 0.8 },
                          .specular = { 1, 1, 1 },
                          .shininess = 0.2 };
+        const char *id = is == WORD_MATERIAL ? gml_id(list) : NULL;
+        if (id && !(look.as.name = arena_strdup(&p->persistent, id)))
+            cg_no_memory(p);
         k->inside = array_push(&k->all, look);
         k->front = true;
         k->lists.len = k->named = 0;
@@ -251,7 +261,7 @@ static void on_end(void *user, const XML_Char *name) {
     cg_affords(p,
                k->all.len * sizeof(*k->all.data) + k->uv.len * sizeof(*k->uv.data) +
                    k->rings.len * sizeof(*k->rings.data) + k->by_ring.keys.bytes + k->by_target.keys.bytes +
-                   (k->by_ring.cap + k->by_target.cap) * 3 * sizeof(uint64_t),
+                   (k->by_ring.cap + k->by_target.cap) * 3 * sizeof(uint64_t) + p->persistent.bytes,
                "its appearances");
 }
 

@@ -17,7 +17,8 @@ static uint32_t look_of(cj_reading *r, const char *key, const cg_look *look) {
         cg_no_memory(r->parser);
         return 0;
     }
-    cg_affords(r->parser, k->all.len * sizeof(*k->all.data) + r->known_looks.keys.bytes, "its appearances");
+    cg_affords(r->parser, k->all.len * sizeof(*k->all.data) + r->known_looks.keys.bytes + r->parser->persistent.bytes,
+               "its appearances");
     return (uint32_t)k->all.len;
 }
 
@@ -42,8 +43,15 @@ static uint32_t read_material(cj_reading *r, const json_t *material) {
         import_x3d_gloss(&look.as, look.specular, look.shininess);
     read_colour(material, "emissiveColor", look.emissive);
     look.transparency = json_number_value(json_object_get(material, "transparency"));
-    char *key = noc_format("m %d %.9g %.9g %.9g %.9g %.9g", look.as.coloured, look.as.albedo[0], look.as.albedo[1],
-                           look.as.albedo[2], look.as.f0, look.as.roughness);
+    const char *name = cj_text(material, "name");
+    char *key = noc_format("m %d %.9g %.9g %.9g %.9g %.9g %s", look.as.coloured, look.as.albedo[0], look.as.albedo[1],
+                           look.as.albedo[2], look.as.f0, look.as.roughness, name);
+    uint64_t known;
+    if (key && *name && !map_get(&r->known_looks, key, &known) &&
+        !(look.as.name = arena_strdup(&r->parser->persistent, name))) {
+        free(key);
+        key = NULL;
+    }
     size_t before = r->parser->looks.all.len;
     uint32_t number = look_of(r, key, &look);
     if (r->parser->looks.all.len > before)

@@ -1,4 +1,5 @@
-/* What a scene is given as a whole, whatever it was made of: the map around it, and what its classes are made of. */
+/* What a scene is given as a whole, whatever it was made of: the map around it, and what its classes, and materials
+ * that inputs name, are made of. */
 #include "import/load/load.h"
 
 #include "scene/scene.h"
@@ -19,6 +20,41 @@ noc_status finish_environment(noc_scene *scene, const char *path) {
 /* What a class is made of: as its scene, which may be a built city, was told before, else by default. */
 static noc_material made_of(const noc_scene *scene, noc_class cls) {
     return scene->class_said >> cls & 1 ? scene->class_looks[cls] : noc_class_material(cls);
+}
+
+/* Some of the names that inputs give, for people. */
+static void list_names(const noc_scene *s, char *out, size_t size) {
+    size_t n = 0, told = 0;
+    *out = 0;
+    for (size_t i = 0; i < s->material_names.len && told < 8 && n + 70 < size; i++) {
+        const char *name = s->material_names.data[i];
+        if (!name || noc_scene_find_material(s, name, 0) != (int)i)
+            continue;
+        n += (size_t)noc_snprintf(out + n, size - n, "%s\"%.60s\"", told ? ", " : "; there are ", name);
+        told++;
+    }
+}
+
+static noc_status set_named(noc_scene *scene, const noc_named_material *to) {
+    int at = noc_scene_find_material(scene, to->name, 0);
+    noc_status status = NOC_OK;
+    if (at < 0) {
+        char names[600];
+        list_names(scene, names, sizeof(names));
+        noc_warn(scene->log, "materials-by-name: no input names one \"%.60s\"%s", to->name, names);
+    }
+    for (; at >= 0 && !status; at = noc_scene_find_material(scene, to->name, at + 1)) {
+        noc_material m = *noc_scene_material_at(scene, at);
+        if (to->albedo[0] >= 0) {
+            memcpy(m.albedo, to->albedo, sizeof(m.albedo));
+            m.texture = 0;
+        }
+        m.f0 = to->f0 >= 0 ? to->f0 : m.f0;
+        m.roughness = to->roughness >= 0 ? to->roughness : m.roughness;
+        m = to->metalness >= 0 ? noc_material_metal(&m, to->metalness) : m;
+        status = noc_scene_set_material(scene, at, &m);
+    }
+    return status;
 }
 
 noc_status finish_materials(noc_scene *scene, const noc_import_params *params) {
@@ -45,6 +81,10 @@ noc_status finish_materials(noc_scene *scene, const noc_import_params *params) {
     for (int c = 0; c < NOC_CLASS_COUNT && !status; c++)
         if (said >> c & 1)
             status = noc_scene_set_class_material(scene, (noc_class)c, &of[c]);
+    for (size_t i = 0; i < params->named_material_count && !status; i++)
+        status = params->named_materials[i].name
+                     ? set_named(scene, &params->named_materials[i])
+                     : noc_error(scene->log, NOC_ERR_ARGUMENT, "import: named_materials[%zu] has no name", i);
     scene->wet = wet;
     return status;
 }

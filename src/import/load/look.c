@@ -47,8 +47,10 @@ noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *n
     if (r->look_texts.refused)
         return noc_no_memory(r->log, r->in->path);
     look.as.image = NULL;
-    if (!look.image && !look.as.coloured)
+    if (!look.image && !look.as.coloured && !look.as.name)
         return NOC_OK;
+    if (look.as.name && !(look.as.name = arena_strdup(&r->look_texts, look.as.name)))
+        return noc_no_memory(r->log, r->in->path);
     if (r->looks.len == MOST_LOOKS) {
         geo_issue(r->in->issues, GEO_GUESSED, "appearance beyond the first million", "");
         return NOC_OK;
@@ -132,8 +134,9 @@ noc_status look_material(importer *im, const input *in, noc_class cls, const sur
     uint64_t image = 0, found;
     if (look->image && !number_image(im, in, look->image, as->wrap, NULL, 0, &image))
         return noc_no_memory(im->log, in->path);
-    char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g", (int)cls, look->image ? (long long)image : -1,
-                           as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness);
+    char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g %s", (int)cls, look->image ? (long long)image : -1,
+                           as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness,
+                           as->name ? as->name : "");
     if (!key)
         return noc_no_memory(im->log, in->path);
     noc_status status = NOC_OK;
@@ -144,6 +147,8 @@ noc_status look_material(importer *im, const input *in, noc_class cls, const sur
         *material = noc_scene_add_material(im->scene, &m);
         if (*material < 0)
             status = NOC_ERR_UNSUPPORTED; /* said by the scene */
+        else if (as->name && noc_scene_name_material(im->scene, *material, as->name))
+            status = NOC_ERR_MEMORY;
         else if (!map_put(&im->looks, key, (uint64_t)*material, NULL) ||
                  (look->image && !array_push(&im->image_uses, (image_use){ *material, (uint32_t)image, { 1, 1, 1 } })))
             status = noc_no_memory(im->log, in->path);

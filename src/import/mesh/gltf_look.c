@@ -88,6 +88,9 @@ noc_status gltf_material(gltf *g, const json_t *primitive, bool placed, int *ind
                                 : "textures are not read, plain material",
                       name);
         *have = noc_scene_add_material(g->scene, &converted) + 1;
+        const char *own = json_string_value(json_object_get(m, "name"));
+        if (*have && own && noc_scene_name_material(g->scene, *have - 1, own))
+            return NOC_ERR_MEMORY;
         status = !*have   ? NOC_ERR_UNSUPPORTED /* said by the scene */
                  : placed ? gltf_texture_give(g, &texture, *have - 1, in_image, name)
                           : NOC_OK;

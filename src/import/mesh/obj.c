@@ -314,7 +314,7 @@ static noc_status add_material(const mesh_target *to, const struct aiMaterial *f
         black = black && converted.albedo[k] == 0;
     for (int k = 0; k < 3; k++)
         image.albedo[k] = black ? 1 : converted.albedo[k];
-    return to->parts->material(to->parts->ctx, &converted, texture ? &image : NULL, material);
+    return to->parts->material(to->parts->ctx, &converted, name, texture ? &image : NULL, material);
 }
 
 static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {

@@ -263,7 +263,7 @@ static noc_status hand_over(ply *p, const mesh_parts *parts) {
     if (!p->indices.len)
         return NOC_OK;
     int material = -1;
-    noc_status status = parts->material(parts->ctx, &plain, NULL, &material);
+    noc_status status = parts->material(parts->ctx, &plain, NULL, NULL, &material);
     noc_mesh mesh = { .vertex_count = p->xyz.len / 3,
                       .positions = p->xyz.data,
                       .triangle_count = p->indices.len / 3,

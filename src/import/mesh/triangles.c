@@ -13,11 +13,14 @@ bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues
     return true;
 }
 
-static noc_status add_material(void *ctx, const noc_material *material, const mesh_image *image, int *index) {
+static noc_status add_material(void *ctx, const noc_material *material, const char *name, const mesh_image *image,
+                               int *index) {
     const mesh_scene *to = ctx;
     *index = noc_scene_add_material(to->scene, material);
     if (*index < 0)
         return NOC_ERR_ARGUMENT; /* said by the scene */
+    if (name && *name && noc_scene_name_material(to->scene, *index, name))
+        return NOC_ERR_MEMORY;
     return image && to->place->image ? to->place->image(to->place->ctx, *index, image) : NOC_OK;
 }
 

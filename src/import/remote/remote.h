@@ -32,7 +32,7 @@ enum {
     REMOTE_LOG = 32, /* level, text */
     REMOTE_CRS,      /* texts: srsName, place */
     REMOTE_LAMP,     /* geo_lamp, texts: id, ref */
-    REMOTE_MATERIAL, /* noc_material, remote_image, text: its name */
+    REMOTE_MATERIAL, /* noc_material, text: its name, remote_image, text: its name */
     REMOTE_MESH,     /* remote_mesh, text: name, positions, indices, places in an image */
     REMOTE_ISSUE,    /* kind, count, texts: reason, examples */
     REMOTE_PROGRESS, /* double */

@@ -166,7 +166,8 @@ static noc_status on_features(void *ctx, const geo_features *features) {
 }
 
 /* Of an image its name alone: whoever asked opens it. */
-static noc_status on_material(void *ctx, const noc_material *material, const mesh_image *image, int *index) {
+static noc_status on_material(void *ctx, const noc_material *material, const char *name, const mesh_image *image,
+                              int *index) {
     serving *s = ctx;
     remote_image told = { 0 };
     if (image) {
@@ -174,6 +175,7 @@ static noc_status on_material(void *ctx, const noc_material *material, const mes
         memcpy(told.albedo, image->albedo, sizeof(told.albedo));
     }
     remote_put(&s->out, material, sizeof(*material));
+    remote_put_text(&s->out, name);
     remote_put(&s->out, &told, sizeof(told));
     remote_put_text(&s->out, image ? image->name : "");
     emit(s, REMOTE_MATERIAL);

@@ -191,9 +191,10 @@ static noc_status take_object_end(remote_taker *t) {
 static noc_status take_material(remote_taker *t, remote_record *one) {
     noc_material material;
     remote_image told = { 0 };
-    if (!remote_get(one, &material, sizeof(material)) || !remote_get(one, &told, sizeof(told)) || !t->parts ||
-        !is_bool(&material.two_sided) || material.texture)
+    if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided) || material.texture)
         return garbled(t);
+    const char *name = remote_get_text(one);
+    remote_get(one, &told, sizeof(told));
     mesh_image image = { .name = remote_get_text(one), .wrap = (noc_wrap)told.wrap };
     bool sound = told.there <= 1 && told.wrap <= NOC_WRAP_CLAMP;
     for (int k = 0; k < 3; k++) {
@@ -203,7 +204,7 @@ static noc_status take_material(remote_taker *t, remote_record *one) {
     if (one->bad || !sound)
         return garbled(t);
     int index;
-    noc_status status = t->parts->material(t->parts->ctx, &material, told.there ? &image : NULL, &index);
+    noc_status status = t->parts->material(t->parts->ctx, &material, name, told.there ? &image : NULL, &index);
     if (status)
         return status;
     return array_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);

@@ -1,0 +1,72 @@
+/* Between the frame of a scene and coordinates as users have them. */
+#include "import/load/load.h"
+
+/* By its definition, which is a user's word, or that of a file where `file` is set. */
+static geo_crs *make_crs(const noc_scene *scene, const char *definition, const char *place, bool file,
+                         noc_status *status) {
+    geo_crs *crs = file ? geo_crs_create_plain(definition, place, scene->log, status)
+                        : geo_crs_create(definition, place, scene->log, status);
+    if (*status && *status != NOC_ERR_MEMORY)
+        *status = NOC_ERR_ARGUMENT;
+    return crs;
+}
+
+/* A copy of one that the scene has, or of one that its file tells. */
+static geo_crs *scene_crs(const noc_scene *scene, const geo_crs *known, const char *kept, noc_status *status) {
+    if (!known)
+        return make_crs(scene, kept ? kept : scene->crs_name, "scene", scene->pages, status);
+    geo_crs *crs = geo_crs_clone(known);
+    *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
+    return crs;
+}
+
+/* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. */
+static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double xyz[3]) {
+    if (!scene->crs && !scene->crs_name)
+        return scene->without_crs
+                   ? noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "%s names no CRS, so coordinates in %s have no place in the scene: say with "
+                               "--crs which one it is in",
+                               scene->without_crs, crs)
+                   : noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "the scene has no CRS, so coordinates in %s have no place in it", crs);
+    noc_status status;
+    geo_crs *user = crs ? make_crs(scene, crs, NULL, false, &status)
+                        : scene_crs(scene, scene->given_crs, scene->given_crs_kept, &status);
+    geo_crs *own = user ? scene_crs(scene, scene->crs, scene->crs_kept, &status) : NULL;
+    geo_transform *t =
+        user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
+    double p[3] = { xyz[0], xyz[1], xyz[2] };
+    if (t && geo_transform_points(t, p, 1))
+        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],
+                           geo_crs_name(to_local ? user : own), to_local ? "the scene's CRS" : geo_crs_name(user));
+    geo_transform_destroy(t);
+    geo_crs_destroy(user);
+    geo_crs_destroy(own);
+    if (!status)
+        memcpy(xyz, p, sizeof(p));
+    return status;
+}
+
+static bool has_given_crs(const noc_scene *scene) { return scene->given_crs || scene->given_crs_kept; }
+
+noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, xyz) : NOC_OK;
+    for (int k = 0; !status && k < 3; k++)
+        xyz[k] -= scene->origin[k];
+    return status;
+}
+
+noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    double p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = xyz[k] + scene->origin[k];
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, false, p) : NOC_OK;
+    if (!status)
+        memcpy(xyz, p, sizeof(p));
+    return status;
+}
