@@ -139,12 +139,50 @@ static void test_many_materials(void **state) {
     noc_log_destroy(log);
 }
 
+/* An image of 512 x 512 and one of 128 x 128: the larger one is halved until both fit, and no texel more. */
+static void test_halved(void **state) {
+    (void)state;
+    static const struct {
+        double most; /* MB */
+        int sides[2];
+        size_t reduced;
+    } wanted[] = { { 2, { 512, 128 }, 0 }, { 1, { 256, 128 }, 1 }, { 0.2, { 128, 128 }, 1 }, { 0.1, { 64, 64 }, 2 } };
+    for (int i = 0; i < 2; i++) {
+        int side = i ? 128 : 512;
+        noc_image *image = noc_image_create(side, side, NULL);
+        noc_display_params linear = noc_display_default_params();
+        linear.auto_exposure = false;
+        assert_int_equal(noc_image_write(image, in_folder(i ? "small.png" : "large.png"), &linear, NULL, NULL), NOC_OK);
+        noc_image_destroy(image);
+    }
+    write_file("city.gml", HEAD TEXTURE("large.png", "p1r", SQUARE) TEXTURE("small.png", "p2r", SQUARE) TAIL);
+    for (size_t i = 0; i < NOC_COUNT(wanted); i++) {
+        noc_import_params p = looks_params(true);
+        noc_report *report;
+        noc_scene_info info;
+        p.texture_memory = wanted[i].most;
+        noc_scene *s = load_by("city.gml", &p, &report);
+        for (int k = 0; k < 2; k++) {
+            int texture = wall_material(s, k)->texture;
+            assert_true(texture > 0);
+            uint32_t size = s->texels.data[s->textures.data[texture - 1].place + 2];
+            if ((int)(size & 0xffff) != wanted[i].sides[k] || size >> 16 != (size & 0xffff))
+                fail_msg("%g MB: image %d is %u x %u", wanted[i].most, k, size & 0xffff, size >> 16);
+        }
+        noc_scene_get_info(s, &info);
+        assert_true((double)info.texture_bytes <= wanted[i].most * 1e6);
+        noc_report_totals totals;
+        noc_report_get_totals(report, &totals);
+        assert_int_equal(totals.images_reduced, wanted[i].reduced);
+        noc_report_destroy(report);
+        noc_scene_destroy(s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_citygml),
-        cmocka_unit_test(test_broken),
-        cmocka_unit_test(test_alike),
-        cmocka_unit_test(test_many_materials),
+        cmocka_unit_test(test_citygml), cmocka_unit_test(test_broken),         cmocka_unit_test(test_halved),
+        cmocka_unit_test(test_alike),   cmocka_unit_test(test_many_materials),
     };
     return run_looks(tests, NOC_COUNT(tests));
 }
