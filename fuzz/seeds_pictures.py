@@ -102,3 +102,32 @@ put("compare", "wider", parts(exr(5, 4, colours, 0), exr(6, 4, colours, 0)))
 put("compare", "higher", parts(exr(5, 4, colours, 0), exr(5, 5, colours, 0)))
 put("compare", "lower", parts(exr(5, 5, colours, 0), exr(5, 4, colours, 0)))
 put("compare", "mixed", parts(exr(5, 4, colours, 0), rgb))
+
+
+# ---- textures ----
+
+
+def jpeg(width, height, scans=0):
+    """Of one grey, by hand: all codes are one bit. scans: of a progressive one, so many behind the first."""
+    part = lambda kind, data: b"\xff" + bytes([kind]) + struct.pack(">H", len(data) + 2) + data
+    table = lambda kind: part(0xc4, bytes([kind, 1]) + bytes(15) + b"\0")
+    scan = lambda first, last, data: part(0xda, bytes([1, 1, 0, first, last, 0])) + data
+    blocks = ((width + 7) // 8) * ((height + 7) // 8)
+    bits = lambda each: bytes((each * blocks + 7) // 8)
+    head = (b"\xff\xd8" + part(0xdb, b"\0" + b"\1" * 64) +
+            part(0xc2 if scans else 0xc0, struct.pack(">BHHB", 8, height, width, 1) + bytes([1, 0x11, 0])) +
+            table(0) + table(0x10))
+    if scans:
+        return head + scan(0, 0, bits(1)) + scan(1, 63, bits(1)) * scans + b"\xff\xd9"
+    return head + scan(0, 63, bits(2)) + b"\xff\xd9"
+
+
+put("pixels", "grey.jpg", jpeg(20, 9))
+put("pixels", "progressive.jpg", jpeg(16, 16, 2))
+put("pixels", "scans.jpg", jpeg(8, 8, 600))
+put("pixels", "cut.jpg", jpeg(64, 64)[:-6])
+put("pixels", "wide.jpg", jpeg(65500, 8)[:400])
+put("pixels", "high.png", png(3, 1 << 30, 8, 2, b"\0" * 20))
+put("pixels", "large.png", png(16384, 6400, 8, 0, b"\0" * 20))
+put("pixels", "rgb.png", rgb)
+put("pixels", "cut.png", rgb[:-30])

@@ -32,6 +32,7 @@ png image 4096 - png
 exr image 8192 - exr
 hdr image 4096 - hdr
 compare image 8192 - -
+pixels pixels 4096 - jpg,png
 crs crs 2048 crs -
 ies profile 4096 profile ies,IES
 ldt profile 4096 profile ldt
