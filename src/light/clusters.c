@@ -80,8 +80,9 @@ static uint32_t light_of(const build *b, size_t i) {
     return b->half == NOC_MOVING ? b->scene->moving.data[i] : (uint32_t)i;
 }
 
-/* What a light's score goes by. Of one with a profile that is not its peak: off the narrow beam of a headlamp it would
- * be scored far too high, and take the places of what shines there. */
+/* What a light's score goes by: the greatest intensity, cd. Of one with a profile that is not its peak: off the narrow
+ * beam of a headlamp it would be scored far too high, and take the places of what shines there. 0 for dark lights
+ * alone, as what has no score is never drawn. */
 static float strength_of(const noc_scene *scene, uint32_t light) {
     const noc_light_record *l = &scene->lights.data[light];
     uint32_t profile = (l->flags & LIGHT_PROFILE_BITS) >> LIGHT_PROFILE;

@@ -20,12 +20,12 @@ typedef struct noc_cluster_block {
     float x[16], y[16], z[16], radius[16]; /* sphere around the lights, shapes included */
     float ax[16], ay[16], az[16];          /* axis of the cone of the directions they face */
     float cos_cone[16], sin_cone[16];      /* half angle of that cone; -1, 0: every direction */
-    float power[16];                       /* sum of the lights' greatest intensities, cd */
+    float power[16];                       /* sum of the lights' strengths, cd */
 } noc_cluster_block;
 
 /* The lights of a cluster, in brief. place: 10 bits a coordinate, from the sphere's centre -radius to +radius; bit 31:
- * faces every way. shine: the upper half of the greatest intensity's float (rounded up), and the way it faces, on the
- * octahedron, 8 bits a coordinate, 127 standing for 0. */
+ * faces every way. shine: the upper half of the strength's float (rounded up), and the way it faces, on the octahedron,
+ * 8 bits a coordinate, 127 standing for 0. */
 typedef struct noc_light_block {
     uint32_t id[16];
     uint32_t place[16];

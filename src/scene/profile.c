@@ -27,15 +27,17 @@ static void put_table(noc_scene *scene, const photometry_table *t) {
     scene->profile_cells.len = first + (size_t)(t->rows - 1) * (size_t)t->columns * CELL;
 }
 
-/* Of noc_scene_profile. The squared cosine is 2 pi / 3 over a hemisphere. */
+/* Of noc_scene_profile, by Simpson's rule between the rows, so that light which is all at the axis counts, too. The
+ * squared cosine is 2 pi / 3 over a hemisphere. */
 static float strength_of(const photometry_table *t) {
     double squares = 0, step = t->gamma_max / (t->rows - 1) * M_PI / 180;
-    for (int r = 0; r < t->rows; r++)
+    for (int r = 0; r + 1 < t->rows; r++)
         for (int c = 0; c < t->columns; c++) {
-            double value = (double)t->value.data[r * t->columns + c];
-            squares += value * value * sin(r * step) * (r % (t->rows - 1) ? 1 : .5);
+            const float *low = t->value.data + r * t->columns + c;
+            double a = (double)low[0], b = (double)low[t->columns], middle = (a + b) / 2;
+            squares += a * a * sin(r * step) + 4 * middle * middle * sin((r + .5) * step) + b * b * sin((r + 1) * step);
         }
-    squares *= step * 2 * M_PI / t->columns;
+    squares *= step / 6 * 2 * M_PI / t->columns;
     return fminf((float)sqrt(squares / (t->upward ? 4 * M_PI : 2 * M_PI / 3)), t->peak);
 }
 

@@ -53,19 +53,22 @@ static void test_light(void **state) {
 }
 
 /* What lists score lights by: of a light that falls off with the cosine, and of an even one, its peak; of a beam of 5
- * degrees, whose cosine is 1, the root of its share of what the squared cosine has over a hemisphere, 2 pi / 3. */
+ * degrees, whose cosine is 1, the root of its share of what the squared cosine has over a hemisphere, 2 pi / 3. A light
+ * that is all at its axis, and gone a step h from it, has h^2 pi / 6: what is scored 0 is never drawn. */
 static void test_strength(void **state) {
     enum { STEPS = 181 };
-    double c = 0, gamma[STEPS], cd[3][STEPS];
+    double c = 0, gamma[STEPS], cd[4][STEPS];
     noc_scene *s = noc_scene_create(NULL);
     for (int i = 0; i < STEPS; i++) {
         gamma[i] = i;
         cd[0][i] = i < 90 ? cos(i * M_PI / 180) : 0;
         cd[1][i] = 1;
         cd[2][i] = i <= 5;
+        cd[3][i] = i == 0;
     }
-    const double beam = sqrt(2 * M_PI * (1 - cos(5.5 * M_PI / 180)) / (2 * M_PI / 3)), want[] = { 1, 1, beam };
-    for (int i = 0; i < 3; i++) {
+    const double beam = sqrt(2 * M_PI * (1 - cos(5.5 * M_PI / 180)) / (2 * M_PI / 3)),
+                 want[] = { 1, 1, beam, M_PI / 360 };
+    for (int i = 0; i < 4; i++) {
         noc_profile *p = NULL;
         assert_int_equal(noc_profile_create(NULL, &(noc_profile_params){ "p", 1, STEPS, &c, gamma, cd[i], 90 }, &p),
                          NOC_OK);
