@@ -140,10 +140,50 @@ static void test_ways(void **state) {
     lamp_sink_end(&s);
 }
 
+static size_t outline_points;
+static noc_status count_footprint(void *ctx, const geo_footprint *footprint) {
+    (void)ctx;
+    outline_points += footprint->ring_size[0];
+    return NOC_OK;
+}
+
+/* A short file whose relation asks again and again for one long way. */
+static void test_long_relation(void **state) {
+    (void)state;
+    enum { POINTS = 1100, MEMBERS = 1000, ROOM = 40 * (POINTS + MEMBERS) + 400 };
+    char *text = malloc(ROOM);
+    for (int members = 1; members <= MEMBERS; members += MEMBERS - 1) {
+        int n = snprintf(text, ROOM,
+                         "{\"generator\": \"test\", \"elements\": [{\"type\": \"way\", \"id\": 1, "
+                         "\"tags\": {\"note\": \"long\"}, \"geometry\": [");
+        for (int i = 0; i <= POINTS; i++)
+            n += snprintf(text + n, ROOM - (size_t)n, "%s{\"lat\": %.6f, \"lon\": %.6f}", i ? "," : "",
+                          50 + 1e-3 * sin(2 * M_PI * (i % POINTS) / POINTS),
+                          8 + 1e-3 * cos(2 * M_PI * (i % POINTS) / POINTS));
+        n += snprintf(text + n, ROOM - (size_t)n,
+                      "]}, {\"type\": \"relation\", \"id\": 2, \"tags\": {\"type\": \"multipolygon\", "
+                      "\"building\": \"yes\"}, \"members\": [");
+        for (int i = 0; i < members; i++)
+            n += snprintf(text + n, ROOM - (size_t)n, "%s{\"type\": \"way\", \"ref\": 1}", i ? "," : "");
+        n += snprintf(text + n, ROOM - (size_t)n, "]}]}");
+        assert_true(n < ROOM);
+        lamp_sink s;
+        lamp_sink_start(&s);
+        s.sink.footprint = count_footprint;
+        outline_points = 0;
+        assert_int_equal(read_lamps_text(&s, text, NULL), NOC_OK);
+        assert_int_equal(outline_points, members == 1 ? POINTS : 0);
+        assert_int_equal(issue_count(&s, "more than a million points"), members > 1);
+        lamp_sink_end(&s);
+    }
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_helsinki), cmocka_unit_test(test_neukoelln), cmocka_unit_test(test_ways),
-        cmocka_unit_test(test_elements), cmocka_unit_test(test_cut),       cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_helsinki),      cmocka_unit_test(test_neukoelln), cmocka_unit_test(test_ways),
+        cmocka_unit_test(test_elements),      cmocka_unit_test(test_cut),       cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_long_relation),
     };
     return cmocka_run_group_tests_name("import/overpass", tests, NULL, tear_down);
 }

@@ -9,7 +9,8 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MOST_MEMBERS = 2000 }; /* ways of a relation: joining them looks at all pairs */
+/* Of a relation: joining its ways looks at all pairs, and each may be the answer's longest. */
+enum { MOST_MEMBERS = 2000, MOST_POINTS = 1 << 20 };
 
 /* A row of points, from `first` in shape_list.xyz on. */
 typedef struct part {
@@ -298,8 +299,12 @@ static noc_status emit_relation(shape_list *list, const json_t *relation) {
         return NOC_OK;
     }
     list->xyz.len = list->missing = list->parts.len = list->ring_xyz.len = list->rings.len = 0;
-    for (size_t i = 0; i < json_array_size(members) && kept; i++)
+    for (size_t i = 0; i < json_array_size(members) && kept && list->xyz.len / 3 <= MOST_POINTS; i++)
         kept = take_member(list, json_array_get(members, i));
+    if (kept && list->xyz.len / 3 > MOST_POINTS) {
+        leave(list, "multipolygon of more than a million points");
+        return NOC_OK;
+    }
     bool whole = !list->missing && list->parts.len;
     if (kept && whole)
         kept = join(list, &closed);
