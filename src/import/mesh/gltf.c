@@ -449,10 +449,15 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
         status = open_glb(&g, (const unsigned char *)data, size, &json, &json_size);
     status = status ? status : parse(&g, json, json_size);
     status = status ? status : gltf_open_buffers(&g);
+    size_t images = json_array_size(json_object_get(g.root, "images"));
     if (!status) {
         g.materials = noc_calloc(2 * json_array_size(json_object_get(g.root, "materials")) + 2, sizeof(*g.materials));
-        status = g.materials ? add_scene(&g) : noc_no_memory(g.log, g.name);
+        g.decoded = noc_calloc(images, sizeof(*g.decoded));
+        status = g.materials && g.decoded ? add_scene(&g) : noc_no_memory(g.log, g.name);
     }
+    for (size_t i = 0; i < images && g.decoded; i++)
+        free(g.decoded[i].data);
+    free(g.decoded);
     gltf_close_buffers(&g);
     json_decref(g.root);
     free(g.materials);

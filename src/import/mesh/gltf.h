@@ -15,6 +15,13 @@ typedef struct gltf_buffer {
     void *owned; /* to free */
 } gltf_buffer;
 
+/* What an image's data URI holds: decoded once, however many materials look like it. */
+typedef struct gltf_image {
+    bool looked, good;
+    unsigned char *data;
+    size_t size;
+} gltf_image;
+
 typedef struct gltf {
     const char *name; /* of the file, for messages */
     char *folder;     /* it lies in, with a slash at its end, or "" */
@@ -29,8 +36,9 @@ typedef struct gltf {
     size_t chunk_size;
     gltf_buffer *buffers;
     size_t buffer_count;
-    bool images; /* are of use */
-    bool told;   /* what is not read of them is counted */
+    gltf_image *decoded; /* of each of its images */
+    bool images;         /* are of use */
+    bool told;           /* what is not read of them is counted */
     /* two each, without and with its image: index in the scene + 1, 0 if not made yet; the last is the default one */
     int *materials;
 } gltf;

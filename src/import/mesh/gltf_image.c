@@ -52,9 +52,9 @@ float *gltf_texture_uv(const gltf *g, const gltf_texture *t, const double *place
     return uv;
 }
 
-/* Gives the image's bytes, or its name, to the place. *decoded is free()d by the caller. */
+/* The image's bytes, or its file's name: *name, which the caller frees. *why: it is of no use. */
 static noc_status find_image(const gltf *g, const json_t *item, size_t index, mesh_image *image, char **name,
-                             unsigned char **decoded, const char **why) {
+                             const char **why) {
     const char *uri = json_string_value(json_object_get(item, "uri"));
     *name = uri && strncmp(uri, "data:", 5) ? noc_strdup(uri) : noc_format("%s#image %zu", g->name, index);
     if (!*name)
@@ -67,12 +67,15 @@ static noc_status find_image(const gltf *g, const json_t *item, size_t index, me
         gltf_decode_percent(*name);
         *why = strstr(uri, "://") ? "image on a network, which is not read" : NULL;
     } else {
-        bool good;
-        *decoded = gltf_decode_data(uri, &image->size, &good);
-        if (good && !*decoded)
+        gltf_image *held = &g->decoded[index];
+        if (!held->looked)
+            held->data = gltf_decode_data(uri, &held->size, &held->good);
+        held->looked = true;
+        if (held->good && !held->data)
             return noc_no_memory(g->log, g->name);
-        image->data = *decoded;
-        *why = good ? NULL : "image that is not base64";
+        image->data = held->data;
+        image->size = held->size;
+        *why = held->good ? NULL : "image that is not base64";
     }
     return NOC_OK;
 }
@@ -88,15 +91,13 @@ noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material,
     }
     mesh_image image = { .wrap = wrap_of(g, texture, name) };
     memcpy(image.albedo, albedo, sizeof(image.albedo));
-    unsigned char *decoded = NULL;
     char *path;
     const char *why = NULL;
-    noc_status status = find_image(g, item, source, &image, &path, &decoded, &why);
+    noc_status status = find_image(g, item, source, &image, &path, &why);
     if (!status && why)
         geo_issue(g->issues, GEO_GUESSED, why, name);
     else if (!status)
         status = g->place->image(g->place->ctx, material, &image);
-    free(decoded);
     free(path);
     return status;
 }
