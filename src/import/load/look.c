@@ -321,7 +321,11 @@ static noc_status find_alike(importer *im) {
             status = compare(im, &im->images.data[before], image, &same);
         else if (!map_put(&first, key, i, NULL))
             status = noc_no_memory(im->log, image->path);
-        image->like = same ? (uint32_t)before + 1 : 0;
+        if (same) {
+            image->like = (uint32_t)before + 1;
+            free(image->data);
+            image->data = NULL;
+        }
         free(key);
     }
     map_free(&first);
