@@ -25,7 +25,8 @@ typedef struct noc_save_params {
     /* A recipe without inputs (nocturne/recipe.h): cameras by name, and options, which noc_recipe_load finds in the
      * file; NULL, the default: none */
     const char *recipe;
-    noc_progress progress; /* asked while the file is written; update NULL, the default: none */
+    noc_progress progress; /* asked while the file is written, and must not edit the scene; update NULL, the default:
+                            * none */
 } noc_save_params;
 
 /* Writes the scene as a built city. The file appears under its name when it is whole; one that was there is replaced

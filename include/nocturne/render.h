@@ -34,8 +34,7 @@ typedef enum noc_isa {
 NOC_API const char *noc_isa_name(noc_isa isa); /* "avx2" */
 NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 
-/* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the
- * frame shaded. */
+/* How a light got its place. */
 typedef enum noc_placed {
     NOC_PLACED_OTHER,    /* no lamp: windows, what shines by its material, what moves */
     NOC_PLACED_MAPPED,   /* a lamp of the data */
@@ -43,6 +42,8 @@ typedef enum noc_placed {
     NOC_PLACED_COUNT
 } noc_placed;
 
+/* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the
+ * frame shaded. */
 typedef enum noc_aov {
     /* lights that the query found: influence: volumes that hold the point; lists: entries of the tile's list */
     NOC_AOV_LIGHTS,
