@@ -157,6 +157,7 @@ typedef struct noc_import_params {
     const noc_group_rule *groups;
     size_t group_count;
     noc_texts group_states; /* "NAME=STATE", as noc_scene_say_group has it: of groups once all is there; default none */
+    bool each_lamp;         /* the report tells of each lamp's lights: noc_report_get_lamp; default false */
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
     int threads; /* that read files of cities at once, and make windows; 0, the default: one a core. The scene is the
                   * same for any number */
@@ -274,6 +275,23 @@ typedef struct noc_report_rule {
     size_t lamps;      /* that it matched: in the scene, and of all where none was loaded */
 } noc_report_rule;
 
+/* A light of a lamp, and what it was made of: noc_import_params.each_lamp. Texts are the report's, "" where there is
+ * none. */
+typedef struct noc_report_lamp {
+    size_t light;        /* its index in the scene, for noc_scene_get_light, which tells the rest */
+    const char *file;    /* path of the input that holds it; "": it was placed by a rule */
+    const char *street;  /* name of the nearest road that has one, within 25 m */
+    const char *road;    /* what the nearest road is there: a value of OpenStreetMap's highway */
+    const char *rules;   /* places of those of noc_import_params.luminaires that matched: "a.yaml:4; a.yaml:7" */
+    const char *profile; /* name of a built-in one, or of the file that a rule or lamp_profile says */
+    double height;       /* m, of the light above its lamp's foot; NaN: there is no ground there */
+    double direction;    /* degrees clockwise from the scene's y axis, to where the lamp faces */
+    double watts;        /* NaN: neither its file nor a rule tells them */
+    /* which of its properties are defaults, or the program's choice where it placed the lamp: 1 << NOC_LAMP_HEIGHT and
+     * so on */
+    unsigned assumed;
+} noc_report_lamp;
+
 /* Sums over the files of a report. */
 typedef struct noc_report_totals {
     size_t objects, buildings;
@@ -303,6 +321,9 @@ NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *
 NOC_API const noc_group_info *noc_report_get_group(const noc_report *report, size_t index);
 /* The rules in their order; NULL beyond the last. */
 NOC_API const noc_report_rule *noc_report_get_rule(const noc_report *report, size_t index);
+/* Lights of lamps, as noc_import_params.each_lamp asks for, by their index in the scene; NULL beyond the last. A built
+ * city keeps none. */
+NOC_API const noc_report_lamp *noc_report_get_lamp(const noc_report *report, size_t index);
 NOC_API void noc_report_destroy(noc_report *report);
 
 /* A path may be a folder (all files in it and below, by name; what is in no format that is read is left out, and told),
@@ -328,6 +349,8 @@ NOC_API int noc_reader_main(void);
  * easting northing height (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
 NOC_API noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]);
+/* The same of many points, 3 numbers each; those that have no place in the CRS become NaN, and are no error. */
+NOC_API noc_status noc_scene_from_local_all(const noc_scene *scene, const char *crs, double *xyz, size_t count);
 
 /* Where a camera stands, as people say it: noc_camera_options. The texts are the caller's. */
 typedef struct noc_camera_params {

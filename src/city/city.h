@@ -39,6 +39,15 @@ struct noc_scene_mesh;
 noc_status city_body_mesh(noc_scene *to, const noc_scene *from, const struct noc_scene_mesh *mesh, int model,
                           int material, const double move[12]);
 
+/* A light that a lamp was made of. */
+typedef struct city_lamp_light {
+    int index;           /* in the scene */
+    double height;       /* m above the lamp's foot; NaN: there is no ground */
+    double direction;    /* degrees clockwise from y, to where it faces */
+    double watts;        /* NaN: not told */
+    const char *profile; /* "": none; city_profiles' */
+} city_lamp_light;
+
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
     double height, lumens, kelvin;
@@ -49,6 +58,7 @@ typedef struct city_lamp_params {
     city_profiles *profiles;       /* NULL: lamps are Lambertian discs, and spheres that shine alike to all sides */
     /* What rules say of a lamp that is placed here (city_infer_lamps); NULL: nothing. Changes the lamp. */
     void (*dress)(void *dresser, geo_lamp *lamp, geo_fitting *fitting);
+    void (*told)(void *dresser, const city_lamp_light *light); /* each that is added; NULL: nobody asks */
     void *dresser;
 } city_lamp_params;
 

@@ -35,7 +35,7 @@ static const struct {
 typedef struct fitting {
     enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
     noc_light_kind light;
-    double height, radius, lumens;
+    double height, radius, lumens, watts;
     double tilt; /* of its axis from straight down, radians */
     int heads;
     bool profiled;
@@ -111,6 +111,7 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
                   .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
     f.lumens = known(told_lumens(lamp), params->lumens);
+    f.watts = known(lamp->watts, NAN);
     if (lamp->type == GEO_LAMP_FLOOD)
         f.kind = FITTING_FLOOD;
     else if (lamp->type == GEO_LAMP_LANTERN || (f.height < 3.5 && lamp->mount != GEO_MOUNT_SUSPENDED))
@@ -122,7 +123,9 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
     if (lamp->body_heads) { /* all heads' flux, from as many as the body shows */
         f.kind = lamp->head_globe ? FITTING_SPHERE : FITTING_DISC;
         f.radius = lamp->head_radius;
-        f.lumens *= lamp->count > 0 ? (double)f.heads / lamp->body_heads : 1;
+        double share = lamp->count > 0 ? (double)f.heads / lamp->body_heads : 1;
+        f.lumens *= share;
+        f.watts *= share;
     }
     choose_light(&f, params);
     double luminance = f.lumens * (f.profiled ? 1 : of_a_lumen(&f));
@@ -259,7 +262,7 @@ typedef struct builder {
     const geo_lamp *lamp;
     const fitting *fitting;
     const placing *placing;
-    city_profiles *profiles;
+    const city_lamp_params *params;
     const city_body *body; /* the user's; NULL: ours */
     bool inferred, pole;
     lamp_shape shape;
@@ -275,6 +278,21 @@ static city_profile_kind profile_kind(const builder *b) {
     return b->placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
 }
 
+static void tell(const builder *b, int index, const double position[3], const double towards[2]) {
+    const fitting *f = b->fitting;
+    double foot = b->placing->foot[2], degrees = atan2(towards[0], towards[1]) * 180 / M_PI;
+    if (b->lamp->body_heads && !site_ground(b->scene, b->lamp->xyz[0], b->lamp->xyz[1], &foot))
+        foot = NAN;
+    const city_lamp_light light = {
+        .index = index,
+        .height = position[2] - foot,
+        .direction = degrees < 0 ? degrees + 360 : degrees,
+        .watts = f->watts,
+        .profile = f->profiled ? city_profile_name(b->params->profiles, profile_kind(b), f->ruled.profile) : ""
+    };
+    b->params->told(b->params->dresser, &light);
+}
+
 /* towards: the way to the street, level. */
 static bool add_light(const builder *b, const double position[3], const double direction[3], const double towards[2]) {
     const fitting *f = b->fitting;
@@ -287,9 +305,12 @@ static bool add_light(const builder *b, const double position[3], const double d
     memcpy(light.direction, direction, sizeof(light.direction));
     memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
     const double street[3] = { towards[0], towards[1], 0 };
-    if (f->profiled && !city_profile_give(b->profiles, profile_kind(b), f->ruled.profile, street, &light))
+    if (f->profiled && !city_profile_give(b->params->profiles, profile_kind(b), f->ruled.profile, street, &light))
         return false;
-    return noc_scene_add_light(b->scene, &light) >= 0;
+    int index = noc_scene_add_light(b->scene, &light);
+    if (index >= 0 && b->params->told)
+        tell(b, index, position, towards);
+    return index >= 0;
 }
 
 /* How far a head is off the pole's axis. A single lantern sits on top. */
@@ -451,7 +472,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
                   .lamp = lamp,
                   .fitting = &f,
                   .placing = &p,
-                  .profiles = params->profiles,
+                  .params = params,
                   .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
     if (params->body && !lamp->body_heads && (b.pole || !params->body->whole)) /* one with a pole hangs on no wall */

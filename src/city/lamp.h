@@ -39,6 +39,9 @@ typedef enum city_profile_kind {
  * street; false after reporting. */
 bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light);
 
+/* Its name; of files, the file's. "" where profiles is NULL. */
+const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled);
+
 /* ---- the user's bodies (lamp_body.c) ---- */
 
 /* A head above its light, which shines along axis; street: the unit vector to the street, level. false after reporting.

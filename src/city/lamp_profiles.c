@@ -8,7 +8,7 @@ typedef struct kept_profile {
     noc_profile *profile;
     int index; /* in the scene; 0: not there yet */
     size_t lights;
-    char *name, *path; /* NULL: of the kinds; path: of files */
+    char *name, *path; /* of files; NULL: of built-in ones */
 } kept_profile;
 
 struct city_profiles {
@@ -25,6 +25,9 @@ city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_stat
         memset(p->of.data, 0, CITY_PROFILES * sizeof(*p->of.data));
         p->scene = scene;
         p->own = file && *file;
+        const char *slash = p->own ? strrchr(file, '/') : NULL;
+        p->of.data[CITY_PROFILE_OWN].name = p->own ? noc_strdup(slash ? slash + 1 : file) : NULL;
+        *status = !p->own || p->of.data[CITY_PROFILE_OWN].name ? NOC_OK : noc_scene_out_of_memory(scene);
     }
     if (!*status && p->own)
         *status = noc_profile_load(scene->log, file, &p->of.data[CITY_PROFILE_OWN].profile);
@@ -75,8 +78,17 @@ noc_status city_profiles_read(city_profiles *p, const char *path, const char *na
     return status;
 }
 
+static size_t chosen(const city_profiles *p, city_profile_kind kind, int ruled) {
+    return ruled > 0 ? (size_t)ruled - 1 : p->own ? CITY_PROFILE_OWN : (size_t)kind;
+}
+
+const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled) {
+    size_t i = p ? chosen(p, kind, ruled) : 0;
+    return !p ? "" : p->of.data[i].name ? p->of.data[i].name : name_of(p, i);
+}
+
 bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light) {
-    size_t i = ruled > 0 ? (size_t)ruled - 1 : p->own ? CITY_PROFILE_OWN : (size_t)kind;
+    size_t i = chosen(p, kind, ruled);
     kept_profile *k = &p->of.data[i];
     if (!k->profile && noc_profile_builtin(NULL, name_of(p, i), &k->profile)) {
         noc_scene_out_of_memory(p->scene); /* there is one of each name */

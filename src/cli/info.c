@@ -11,8 +11,8 @@ static const noc_option own_options[] = {
       "tell of all inputs as one scene, too, as render loads them: buildings, triangles, windows, lamps, what was "
       "skipped; where neither is said, of recipes" },
     { "each-lamp", "Output", NOC_OPTION_BOOL, offsetof(A, each_lamp), 0, 1, NULL, "",
-      "a line of CSV for each lamp of the scene, instead of all else: its place, flux, group, and whether it is mapped "
-      "or inferred; with --json beside the rest" },
+      "a line of CSV for each lamp of the scene, instead of all else: its place, flux, colour, height, profile, road, "
+      "the rules that matched it, and whether it is mapped or inferred; with --json beside the rest" },
     { "timing", "Output", NOC_OPTION_BOOL, offsetof(A, timing), 0, 1, NULL, "",
       "tell how long reading took, and with a scene the peak memory" },
     { NULL },
@@ -356,12 +356,13 @@ static int tell_scene(const info_args *args, noc_log *log) {
     }
     info_city city;
     noc_status loaded = info_load(args, inputs, count, log, &city);
-    if (cli_is_built(&args->common) && !loaded) {
+    bool table = args->each_lamp && !args->json; /* which a program reads: nothing stands before it */
+    if (cli_is_built(&args->common) && !loaded && !table) {
         fputs(args->json ? "\n" : "", stdout);
         info_built(inputs[0], args->json, log);
         profiles++;
     }
-    if (args->each_lamp && !args->json) {
+    if (table) {
         loaded = loaded ? loaded : info_lamps(&city, false);
         info_city_end(&city);
         free(inputs);
@@ -407,6 +408,7 @@ static int run(void *arguments) {
     cli_progress_start(args->common.quiet);
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     args->import.builtin = &args->builtin;
+    args->import.each_lamp = args->each_lamp;
     noc_log *log = cli_log_create(&args->common);
     if (args->json)
         printf("{\"nocturne\": \"%s\", \"files\": [", noc_version());

@@ -126,6 +126,7 @@ static noc_camera camera;
     P(0, noc_scene_add_builtin(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(0, noc_report_file_count(NULL) == 0 && !noc_report_get_file(NULL, 0))                                            \
     P(noc_report_get_totals(NULL, NULL), true)                                                                         \
+    P(0, !noc_report_get_lamp(NULL, 0))                                                                                \
     P(0, !noc_report_get_rule(NULL, 0) && !noc_report_get_group(NULL, 0))                                              \
     P(noc_report_destroy(NULL), true)                                                                                  \
     P(0, noc_scene_load(NULL, (const char *[]){ "a" }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                             \
@@ -134,6 +135,8 @@ static noc_camera camera;
     P(0, noc_inspect(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_to_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                         \
     P(0, noc_scene_to_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_scene_from_local_all(NULL, NULL, (double[3]){ 0 }, 1) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_scene_from_local_all(scene, NULL, NULL, 1) == NOC_ERR_ARGUMENT)                                           \
     P(0, noc_scene_from_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                       \
     P(0, noc_scene_from_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
     P(0, noc_scene_place_camera(NULL, NULL, 1, &camera, NULL) == NOC_ERR_ARGUMENT)                                     \

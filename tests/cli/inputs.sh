@@ -164,13 +164,19 @@ cat >lit.osm <<'END'
 END
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     run info --each-lamp --infer-lamps lit.osm
-    test $status = 0 && test "$(head -n 1 out)" = name,placed,x,y,z,lumens,shape,group && test "$(wc -l <out)" = 8 &&
-        grep -q '^"node/3",mapped,.*,5000,disc,"lamps"$' out &&
+    test $status = 0 && head -n 1 out | grep -q '^name,placed,x,y,z,lumens,shape,group,kelvin,.*,crs$' &&
+        test "$(wc -l <out)" = 8 &&
+        grep -q '^"node/3",mapped,.*,5000,disc,"lamps",3000,' out &&
         test "$(grep -c '^"inferred/way/4/[1-6]",inferred,' out)" = 6
     result $? "info of each lamp"
     run info --each-lamp --infer-lamps --json lit.osm
-    test $status = 0 && test "$(grep -c '"placed": "inferred".*"group": "lamps"' out)" = 6
+    test $status = 0 && test "$(grep -c '"placed": "inferred".*"group": "lamps"' out)" = 6 &&
+        grep -q '"lumens": 5000,.*"kelvin": 3000, "watts": null,.*"road": "residential",.*"lon": 8.00' out
     result $? "info of each lamp as JSON"
+    run build --infer-lamps lit.osm -o lit.noct && run info --each-lamp lit.noct
+    test $status = 0 && test "$(wc -l <out)" = 8 &&
+        grep -q '^"node/3",mapped,.*"lamps",3000,,"","","","",6.00,,0.0,"","",7.99999[0-9]*,50.00999' out
+    result $? "info of each lamp of a built city"
     run render --infer-lamps --map-surfaces lit.osm --size 64x36 --frames 2 --show placed -o placed.png
     test $status = 0 && grep -q '2 inferred lamps [0-9.]*%' out && ! grep -q other out
     result $? "a view of where inferred lamps lead"

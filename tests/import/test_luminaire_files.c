@@ -114,6 +114,7 @@ static noc_status load(noc_log *log) {
     params.group_states = (noc_texts){ { "led=0.5" }, 1 };
     params.windows = NOC_SWITCH_OFF;
     params.threads = 1;
+    params.each_lamp = true;
     noc_scene *scene = noc_scene_create(log);
     noc_status status =
         scene ? noc_scene_load(scene, (const char *[]){ in_folder("lamps.csv") }, 1, &params, NULL) : NOC_ERR_MEMORY;

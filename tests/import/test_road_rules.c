@@ -1,6 +1,7 @@
 /* Rules and groups that ask for the kind of the road that a lamp stands beside. */
 #include "test.h"
 
+#include <math.h>
 #include <nocturne/nocturne.h>
 #include <unistd.h>
 
@@ -206,12 +207,91 @@ static void test_what_idle_rules_may_mean(void **state) {
     assert_warned("road", "motorway", ": no road of the inputs is of that kind");
 }
 
+/* The report of each lamp: its roads, its rules in their order, and what nothing tells of it. */
+static void test_each_lamp(void **state) {
+    (void)state;
+    const noc_condition asks[] = { { "road", "primary" }, { "inferred", "yes" } };
+    noc_luminaire_rule rules[3] = { noc_luminaire_default_rule(), noc_luminaire_default_rule(),
+                                    noc_luminaire_default_rule() };
+    noc_import_params params = noc_import_default_params();
+    rules[0].place = "town.yaml:2";
+    rules[0].height = 7.5;
+    rules[1].conditions = &asks[0];
+    rules[1].condition_count = 1;
+    rules[1].watts = 60;
+    rules[1].profile = "flood";
+    rules[2].conditions = &asks[1];
+    rules[2].condition_count = 1;
+    rules[2].place = "town.yaml:9";
+    rules[2].kelvin = 2200;
+    params.luminaires = rules;
+    params.luminaire_count = 3;
+    params.infer_lamps = NOC_SWITCH_ON;
+    loaded l = load("map.osm", &params);
+    assert_null(noc_report_get_lamp(l.report, 0)); /* nobody asked */
+    unload(&l);
+    params.each_lamp = true;
+    l = load("map.osm", &params);
+    static const char *const road[] = { "residential", "primary", "primary_link", "footway", "living_street", "" };
+    const noc_report_lamp *lamp;
+    size_t mapped = 0, inferred = 0, before = 0;
+    for (size_t i = 0; (lamp = noc_report_get_lamp(l.report, i)); i++) {
+        noc_light_info light;
+        assert_int_equal(noc_scene_get_light(l.scene, lamp->light, &light), NOC_OK);
+        assert_true(light.lamp && (!i || lamp->light > before) && fabs(lamp->height - 7.5) < 0.05);
+        before = lamp->light;
+        if (light.light.inferred) {
+            inferred++;
+            assert_string_equal(lamp->file, "");
+            assert_string_equal(lamp->road, "primary");
+            assert_string_equal(lamp->rules, "town.yaml:2; rule 2; town.yaml:9");
+            assert_int_equal(lamp->assumed, 0); /* rules say all */
+            continue;
+        }
+        size_t number = (size_t)(light.light.name[strlen(light.light.name) - 1] - '1');
+        bool ring = number == 1;
+        assert_true(number < 6);
+        mapped++;
+        assert_string_equal(lamp->file, in_folder("map.osm"));
+        assert_string_equal(lamp->road, road[number]);
+        assert_string_equal(lamp->street, ring ? "Ring" : "");
+        assert_string_equal(lamp->rules, ring ? "town.yaml:2; rule 2" : "town.yaml:2");
+        assert_string_equal(lamp->profile, ring ? "flood" : "cobra-head");
+        assert_true(ring ? lamp->watts == 60 : isnan(lamp->watts));
+        assert_int_equal(lamp->assumed, 1 << NOC_LAMP_COLOUR | (ring ? 0 : 1 << NOC_LAMP_FLUX));
+        if (ring) /* its road is to the north */
+            assert_true(fabs(remainder(lamp->direction, 360)) < 3);
+    }
+    assert_true(mapped == 6 && inferred > 3);
+    unload(&l);
+    params.luminaire_count = 0;
+    l = load("map.osm", &params);
+    for (size_t i = 0; (lamp = noc_report_get_lamp(l.report, i)); i++)
+        assert_true(lamp->assumed == 7 && !*lamp->rules); /* of a placed one the road's class said what it is */
+    unload(&l);
+}
+
+/* Many points at once are where one by one they are; one without a place harms no other. */
+static void test_places_of_many(void **state) {
+    (void)state;
+    noc_scene *scene = noc_scene_create(log_);
+    assert_int_equal(noc_scene_set_crs(scene, "EPSG:25832", (double[3]){ 678000, 5403000, 370 }), NOC_OK);
+    double many[9] = { 0, 0, 0, NAN, 0, 0, 1000, -500, 20 };
+    assert_int_equal(noc_scene_from_local_all(scene, "EPSG:4326", many, 3), NOC_OK);
+    for (int i = 0; i < 3; i += 2) {
+        double one[3] = { i * 500, i * -250, i * 10 };
+        assert_int_equal(noc_scene_from_local(scene, "EPSG:4326", one), NOC_OK);
+        assert_memory_equal(one, many + 3 * i, sizeof(one));
+    }
+    assert_true(fabs(many[0] - 11.42) < .05 && fabs(many[1] - 48.75) < .05 && isnan(many[3]));
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads_of_a_map),
-        cmocka_unit_test(test_lamps_that_are_placed),
-        cmocka_unit_test(test_columns_of_a_map),
-        cmocka_unit_test(test_what_idle_rules_may_mean),
+        cmocka_unit_test(test_roads_of_a_map),   cmocka_unit_test(test_lamps_that_are_placed),
+        cmocka_unit_test(test_columns_of_a_map), cmocka_unit_test(test_each_lamp),
+        cmocka_unit_test(test_places_of_many),   cmocka_unit_test(test_what_idle_rules_may_mean),
     };
     return cmocka_run_group_tests(tests, start, end);
 }

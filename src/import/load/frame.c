@@ -20,8 +20,10 @@ static geo_crs *scene_crs(const noc_scene *scene, const geo_crs *known, const ch
     return crs;
 }
 
-/* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. */
-static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double xyz[3]) {
+/* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. A point that
+ * has no place there becomes NaN, and of a lone one that is an error. */
+static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double *xyz, size_t count,
+                          bool lone) {
     if (!scene->crs && !scene->crs_name)
         return scene->without_crs
                    ? noc_error(scene->log, NOC_ERR_ARGUMENT,
@@ -36,15 +38,13 @@ static noc_status convert(const noc_scene *scene, const char *crs, bool to_local
     geo_crs *own = user ? scene_crs(scene, scene->crs, scene->crs_kept, &status) : NULL;
     geo_transform *t =
         user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
-    double p[3] = { xyz[0], xyz[1], xyz[2] };
-    if (t && geo_transform_points(t, p, 1))
-        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],
+    const double x = lone ? xyz[0] : 0, y = lone ? xyz[1] : 0;
+    if (t && geo_transform_points(t, xyz, count) && lone)
+        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", x, y,
                            geo_crs_name(to_local ? user : own), to_local ? "the scene's CRS" : geo_crs_name(user));
     geo_transform_destroy(t);
     geo_crs_destroy(user);
     geo_crs_destroy(own);
-    if (!status)
-        memcpy(xyz, p, sizeof(p));
     return status;
 }
 
@@ -53,20 +53,29 @@ static bool has_given_crs(const noc_scene *scene) { return scene->given_crs || s
 noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
     if (!scene || !xyz)
         return NOC_ERR_ARGUMENT;
-    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, xyz) : NOC_OK;
+    double p[3] = { xyz[0], xyz[1], xyz[2] };
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, p, 1, true) : NOC_OK;
     for (int k = 0; !status && k < 3; k++)
-        xyz[k] -= scene->origin[k];
+        xyz[k] = p[k] - scene->origin[k];
     return status;
+}
+
+static noc_status from_local(const noc_scene *scene, const char *crs, double *xyz, size_t count, bool lone) {
+    for (size_t i = 0; i < 3 * count; i++)
+        xyz[i] += scene->origin[i % 3];
+    return crs || has_given_crs(scene) ? convert(scene, crs, false, xyz, count, lone) : NOC_OK;
 }
 
 noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]) {
     if (!scene || !xyz)
         return NOC_ERR_ARGUMENT;
-    double p[3];
-    for (int k = 0; k < 3; k++)
-        p[k] = xyz[k] + scene->origin[k];
-    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, false, p) : NOC_OK;
+    double p[3] = { xyz[0], xyz[1], xyz[2] };
+    noc_status status = from_local(scene, crs, p, 1, true);
     if (!status)
         memcpy(xyz, p, sizeof(p));
     return status;
+}
+
+noc_status noc_scene_from_local_all(const noc_scene *scene, const char *crs, double *xyz, size_t count) {
+    return scene && xyz ? from_local(scene, crs, xyz, count, false) : NOC_ERR_ARGUMENT;
 }

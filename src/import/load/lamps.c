@@ -328,6 +328,7 @@ static noc_status light_city(importer *im, const extent *e) {
                                 .tally = &tally,
                                 .profiles = im->profiles,
                                 .dress = luminaires_dress_inferred,
+                                .told = im->params->each_lamp ? each_lamp_light : NULL,
                                 .dresser = im };
     city_body body;
     if (scene->no_memory) /* for the ground, and said so: the body's scene would say it again */

@@ -201,6 +201,7 @@ typedef struct importer {
     geo_triangles water;                /* of maps that are read for their roads; local metres, z of no use */
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
+    noc_report_lamp lamp_now;    /* that is being stood (each_lamp.c) */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
     size_t names_asked; /* bytes of it when take_kept asked last */
@@ -301,7 +302,16 @@ noc_status luminaires_finish(importer *im); /* groups begin as they are said to;
 noc_status luminaires_say(importer *im);    /* what params say of groups at the end; all of a built city */
 noc_status luminaires_report(importer *im); /* the groups, once they have begun */
 
+/* each_lamp.c: what the report tells of each lamp, where params ask for it. */
+/* A lamp is stood next, as the rules have it. matched: places of the rules. in NULL: it is placed by a rule, and what
+ * no rule says of it (said: 1 << NOC_LAMP_HEIGHT ...) is assumed. */
+void each_lamp_begin(importer *im, const input *in, lamp_roads roads, const geo_lamp *lamp, const char *matched,
+                     unsigned said);
+struct city_lamp_light;
+void each_lamp_light(void *importer, const struct city_lamp_light *light); /* city_lamp_params.told */
+
 struct noc_report {
+    NOC_ARRAY(noc_report_lamp) lamps;
     const noc_report_rule *rules;
     size_t rule_count;
     const noc_group_info *groups;

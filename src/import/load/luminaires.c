@@ -8,6 +8,8 @@
 #include <nocturne/option.h>
 #include <nocturne/text.h>
 
+#define MOST_PLACES 2000 /* bytes of the places of rules that a report tells of a lamp */
+
 struct luminaires {
     lamp_conditions *conditions; /* NULL: there are no rules and no groups */
     int *profile;                /* of each rule: geo_fitting.profile */
@@ -154,7 +156,9 @@ void luminaires_free(luminaires *l) {
     free(l);
 }
 
-bool luminaires_ask_roads(const importer *im) { return lamp_conditions_ask_roads(im->luminaires->conditions); }
+bool luminaires_ask_roads(const importer *im) {
+    return im->params->each_lamp || lamp_conditions_ask_roads(im->luminaires->conditions);
+}
 
 /* ---- lamps ---- */
 
@@ -213,15 +217,25 @@ void luminaires_dress(importer *im, const input *in, lamp_roads roads, geo_lamp 
                               .street = roads.street ? roads.street->name : NULL,
                               .road = highway_word(roads.beside),
                               .inferred = !in };
+    char places[MOST_PLACES] = "";
+    size_t n = 0;
+    unsigned said = 0;
     *fitting = geo_no_fitting();
     for (size_t i = 0; i < im->params->luminaire_count; i++) {
+        const noc_luminaire_rule *r = &im->params->luminaires[i];
         if (!lamp_rule_holds(l->conditions, i, &of))
             continue;
         l->matched[i].lamps++;
-        apply(&im->params->luminaires[i], l->profile[i], lamp, fitting);
+        apply(r, l->profile[i], lamp, fitting);
+        said |= isfinite(r->height) ? 1u << NOC_LAMP_HEIGHT : 0;
+        said |= isfinite(r->lumens) || isfinite(r->watts) ? 1u << NOC_LAMP_FLUX : 0;
+        if (im->params->each_lamp && n < sizeof(places) - 1)
+            n += (size_t)noc_snprintf(places + n, sizeof(places) - n, "%s%s", n ? "; " : "", l->matched[i].place);
     }
     fitting->group = luminaires_group(im, &of);
     lamp->fitting = fitting;
+    if (im->params->each_lamp && !im->inspect)
+        each_lamp_begin(im, in, roads, lamp, places, said);
 }
 
 void luminaires_see(importer *im, input *in, geo_lamp *lamp) {

@@ -32,9 +32,14 @@ const noc_report_rule *noc_report_get_rule(const noc_report *report, size_t inde
     return report && index < report->rule_count ? &report->rules[index] : NULL;
 }
 
+const noc_report_lamp *noc_report_get_lamp(const noc_report *report, size_t index) {
+    return report && index < report->lamps.len ? &report->lamps.data[index] : NULL;
+}
+
 void noc_report_destroy(noc_report *report) {
     if (!report)
         return;
+    array_free(&report->lamps);
     array_free(&report->files);
     arena_free(&report->arena);
     free(report);
