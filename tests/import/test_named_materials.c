@@ -91,6 +91,26 @@ static void test_formats(void **state) {
     }
 }
 
+/* What is not told stays as the file has it: its image, too, which comes after all surfaces. */
+static void test_some(void **state) {
+    (void)state;
+    const noc_named_material named[] = { { "brick", { -1, -1, -1 }, -1, .25f, -1 },
+                                         { "brick", { -1, -1, -1 }, .1f, -1, -1 } };
+    noc_import_params p = looks_params(true);
+    write_files();
+    noc_scene *plain = load_by("one.obj", &p, NULL);
+    p.named_materials = named;
+    p.named_material_count = 2;
+    noc_scene *s = load_by("one.obj", &p, NULL);
+    noc_material was, is;
+    assert_int_equal(noc_scene_get_material(plain, noc_scene_find_material(plain, "brick", 0), &was, NULL), NOC_OK);
+    assert_int_equal(noc_scene_get_material(s, noc_scene_find_material(s, "brick", 0), &is, NULL), NOC_OK);
+    assert_true(was.texture && is.texture == was.texture && is.albedo[0] == .5f && was.albedo[0] == .5f);
+    assert_true(is.roughness == .25f && is.f0 == .1f && was.roughness != .25f);
+    noc_scene_destroy(plain);
+    noc_scene_destroy(s);
+}
+
 /* A name that no input gives is told, with those that there are. */
 static void warn(void *user, noc_log_level level, const char *text) {
     if (level == NOC_LOG_WARN && strstr(text, "\"nobody\"; there are \"brick\", \"plain\""))
@@ -167,10 +187,8 @@ static void test_recipe(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_unknown),
-        cmocka_unit_test(test_built),
-        cmocka_unit_test(test_recipe),
+        cmocka_unit_test(test_formats), cmocka_unit_test(test_some),   cmocka_unit_test(test_unknown),
+        cmocka_unit_test(test_built),   cmocka_unit_test(test_recipe),
     };
     return run_looks(tests, NOC_COUNT(tests));
 }

@@ -35,7 +35,8 @@ static void list_names(const noc_scene *s, char *out, size_t size) {
     }
 }
 
-static noc_status set_named(noc_scene *scene, const noc_named_material *to) {
+/* now: the scene's materials, with the images that wait for the commit. */
+static noc_status set_named(noc_scene *scene, const noc_named_material *to, noc_material *now) {
     int at = noc_scene_find_material(scene, to->name, 0);
     noc_status status = NOC_OK;
     if (at < 0) {
@@ -44,7 +45,7 @@ static noc_status set_named(noc_scene *scene, const noc_named_material *to) {
         noc_warn(scene->log, "materials-by-name: no input names one \"%.60s\"%s", to->name, names);
     }
     for (; at >= 0 && !status; at = noc_scene_find_material(scene, to->name, at + 1)) {
-        noc_material m = *noc_scene_material_at(scene, at);
+        noc_material m = now[at];
         if (to->albedo[0] >= 0) {
             memcpy(m.albedo, to->albedo, sizeof(m.albedo));
             m.texture = 0;
@@ -53,7 +54,26 @@ static noc_status set_named(noc_scene *scene, const noc_named_material *to) {
         m.roughness = to->roughness >= 0 ? to->roughness : m.roughness;
         m = to->metalness >= 0 ? noc_material_metal(&m, to->metalness) : m;
         status = noc_scene_set_material(scene, at, &m);
+        now[at] = m;
     }
+    return status;
+}
+
+static noc_status set_all_named(noc_scene *scene, const noc_import_params *params) {
+    noc_status status = NOC_OK;
+    noc_material *now = noc_alloc(scene->materials.len * sizeof(*now));
+    if (!now)
+        return noc_no_memory(scene->log, "import");
+    for (size_t i = 0; i < scene->materials.len; i++)
+        now[i] = scene->materials.data[i];
+    for (size_t i = 0; i < scene->edits.len; i++)
+        if (scene->edits.data[i].kind == NOC_EDIT_MATERIAL)
+            now[scene->edits.data[i].index] = scene->edits.data[i].material;
+    for (size_t i = 0; i < params->named_material_count && !status; i++)
+        status = params->named_materials[i].name
+                     ? set_named(scene, &params->named_materials[i], now)
+                     : noc_error(scene->log, NOC_ERR_ARGUMENT, "import: named_materials[%zu] has no name", i);
+    free(now);
     return status;
 }
 
@@ -81,10 +101,8 @@ noc_status finish_materials(noc_scene *scene, const noc_import_params *params) {
     for (int c = 0; c < NOC_CLASS_COUNT && !status; c++)
         if (said >> c & 1)
             status = noc_scene_set_class_material(scene, (noc_class)c, &of[c]);
-    for (size_t i = 0; i < params->named_material_count && !status; i++)
-        status = params->named_materials[i].name
-                     ? set_named(scene, &params->named_materials[i])
-                     : noc_error(scene->log, NOC_ERR_ARGUMENT, "import: named_materials[%zu] has no name", i);
+    if (!status && params->named_material_count)
+        status = set_all_named(scene, params);
     scene->wet = wet;
     return status;
 }
