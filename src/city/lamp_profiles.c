@@ -49,7 +49,7 @@ void city_profiles_destroy(city_profiles *p) {
 }
 
 static const char *name_of(const city_profiles *p, size_t i) {
-    return i >= CITY_PROFILES ? p->of.data[i].name : i == CITY_PROFILE_OWN ? "own" : noc_profile_builtin_name((int)i);
+    return p->of.data[i].name ? p->of.data[i].name : noc_profile_builtin_name((int)i);
 }
 
 int city_profiles_builtin(const char *name) {

@@ -177,7 +177,7 @@ static void print_summary(const build_args *args, const noc_scene *scene, const 
         printf(", %s", noc_text_many(a, info.windows, "window"));
     printf("\n  inputs    features skipped: %zu, repaired: %zu, guessed at: %zu\n", totals.skipped, totals.repaired,
            totals.guessed);
-    printf("  draw it: nocturne render %s -o night.png\n", path);
+    printf("  draw it: %s render %s -o night.png\n", cli_program(), path);
 }
 
 /* From here on an interrupt waits for the file to go, or to be whole. */

@@ -72,10 +72,14 @@ void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2); /* one line on stderr, af
 int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3);
 int cli_read_on(const cli_command *command); /* where to read on alone, after an error that the library told */
 noc_log *cli_log_create(const cli_args *args);
+/* The program as it was called, for commands that are shown to be typed: a path where it is not on PATH. */
+void cli_called(const char *name);
+const char *cli_program(void);
 _Noreturn void cli_no_memory(void); /* says so, and ends the program */
 /* noc_image_auto_ev100; ends the program when memory is gone */
 double cli_auto_ev100(const noc_image *image);
-void *cli_alloc(size_t size); /* zeroed; ends the program when memory is gone */
+void *cli_alloc(size_t size);                    /* zeroed; ends the program when memory is gone */
+const char *cli_number(char text[32], double v); /* "0.35", "16,990": four digits, or all that are whole */
 char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
 /* Ids of a report, comma separated, of which only whole ones are shown: the first, and as many more as fit; then how
  * many of the `count` features are left. free() it. */

@@ -359,7 +359,7 @@ static int run(void *arguments) {
     if (!status && !args->common.quiet) {
         char shown[400];
         noc_text_clean(shown, sizeof(shown), path);
-        printf("%s\n  draw it: nocturne render %s -o night.png\n", shown, shown);
+        printf("%s\n  draw it: %s render %s -o night.png\n", shown, cli_program(), shown);
     }
     free(path);
     free(folder);

@@ -36,7 +36,8 @@ static char *state_of(const noc_group_info *g) {
     char *scale = !grey              ? cli_format(", x %g %g %g", g->scale[0], g->scale[1], g->scale[2])
                   : g->scale[0] != 1 ? cli_format(", x %g", g->scale[0])
                                      : cli_format("%s", "");
-    char *text = cli_format("%.4g klm%s%s", g->lumens / 1e3, scale, coloured ? ", recoloured" : "");
+    char flux[32];
+    char *text = cli_format("%s klm%s%s", cli_number(flux, g->lumens / 1e3), scale, coloured ? ", recoloured" : "");
     free(scale);
     return text;
 }

@@ -29,7 +29,8 @@ static int unknown_command(const char *name) {
     if (nearest)
         return cli_usage(NULL, "no command \"%s\"; is it %s?", shown, nearest);
     return !access(name, R_OK) || !strncmp(name, "builtin:", 8)
-               ? cli_usage(NULL, "\"%s\" is no command; to draw it: nocturne render %s -o night.png", shown, shown)
+               ? cli_usage(NULL, "\"%s\" is no command; to draw it: %s render %s -o night.png", shown, cli_program(),
+                           shown)
                : cli_usage(NULL, "no command \"%s\"", shown);
 }
 
@@ -86,6 +87,7 @@ static bool enough_stack(void) {
 }
 
 int main(int argc, char **argv) {
+    cli_called(argv[0]);
     if (!enough_stack())
         return CLI_FAILURE;
     signal(SIGXFSZ, SIG_IGN); /* a file over the size limit is a failed write: said, and nothing is left behind */

@@ -18,8 +18,12 @@ static int check_folder(const char *path, const char *shown) {
     char *folder = slash ? cli_format("%.*s", slash == path ? 1 : (int)(slash - path), path) : cli_format(".");
     struct stat st;
     int status = CLI_FAILURE;
-    if (stat(folder, &st))
-        cli_error("%s: its folder cannot be used: %s", shown, strerror(errno));
+    char named[120];
+    noc_text_clean(named, sizeof(named), folder);
+    if (stat(folder, &st) && errno == ENOENT)
+        cli_error("%s: its folder %s is not there: make it first", shown, named);
+    else if (stat(folder, &st))
+        cli_error("%s: its folder %s cannot be used: %s", shown, named, strerror(errno));
     else if (!S_ISDIR(st.st_mode))
         cli_error("%s: what should be its folder is a file", shown);
     else if (access(folder, W_OK | X_OK))

@@ -375,6 +375,25 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);
 }
 
+/* The map around the scene: its file, which a built city does not keep, and what it does. */
+static void print_map(const render_job *job) {
+    const noc_render_params *p = &job->args->render;
+    const noc_scene_info *scene = &job->scene_info;
+    const char *path = job->args->import.environment;
+    char a[32], name[160];
+    if (!scene->environment_width)
+        return;
+    double lux = scene->environment_lux;
+    lux = (p->environment_lux > 0 && lux > 0 ? p->environment_lux : lux) * p->environment_scale;
+    printf("  map       %s, %s pixels wide, ",
+           noc_text_clean(name, sizeof(name), path ? last_names(path, 1) : "of the built city"),
+           noc_text_count(a, (uint64_t)scene->environment_width));
+    if (p->environment_light)
+        printf("as background and light: %s lx on open ground\n", cli_number(a, lux));
+    else
+        puts("as background alone: --environment-light lights the city by it");
+}
+
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
@@ -404,6 +423,7 @@ void cli_print_summary(const render_job *job) {
         printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0],
                scene->given_origin[1], scene->given_origin[2],
                strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
+    print_map(job);
     print_lamps(job->report, &args->import);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],

@@ -8,6 +8,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static const char *program = "nocturne";
+
+void cli_called(const char *name) { program = name && *name ? name : program; }
+
+const char *cli_program(void) { return program; }
+
 char *cli_ids(const char *list, size_t count, size_t width) {
     enum { LISTED = 5 }; /* by the library: fewer are all there are */
     size_t shown = 0, listed = 0, end = 0;
@@ -75,6 +81,13 @@ noc_log *cli_log_create(const cli_args *args) {
     if (!log)
         cli_no_memory();
     return log;
+}
+
+const char *cli_number(char text[32], double v) {
+    if (v >= 999.95 && v < 1e15)
+        return noc_text_count(text, (uint64_t)round(v));
+    snprintf(text, 32, "%.4g", v);
+    return text;
 }
 
 void *cli_alloc(size_t size) {

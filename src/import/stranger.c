@@ -38,7 +38,7 @@ const char *stranger_told(const char *head) {
         { "<", "<kml", "this is KML, which is not read: convert it to GeoJSON, with ogr2ogr for example" },
         { "<", "<OpenDRIVE",
           "this is OpenDRIVE (roads for driving simulators), which is not read: "
-          "city models are CityGML, OBJ or glTF, lamps are tables and maps of points" },
+          "city models are CityGML, CityJSON, OBJ, PLY or glTF, lamps are tables and maps of points" },
         { "<", "schemas.openxmlformats.org", office },
         { "<", "oasis:names:tc:opendocument", office },
     };

@@ -9,8 +9,9 @@ ln -s /dev/full device.png
 ln -s input.png link.png
 mkfifo pipe.png
 
-expect "a missing folder" 1 'its folder cannot be used: No such file' render $c -o missing/x.png
-expect "a missing folder at the root" 1 'its folder cannot be used' render $c -o /nonexistent/x.png
+expect "a missing folder" 1 'its folder missing is not there: make it first' render $c -o missing/x.png
+expect "a missing folder at the root" 1 'its folder /nonexistent is not there: make it first' \
+    render $c -o /nonexistent/x.png
 expect "a file for a folder" 1 'folder' render $c -o file/x.png
 expect "a folder" 1 'is a folder' render $c -o folder
 expect "a folder with the right ending" 1 'is a folder' render $c -o folder.png

@@ -68,6 +68,15 @@ run init files city.gml --lamp-profile lamp.ies --lamps plain.csv
 grep -q "^  profile: \"$PWD/lamp.ies\"" files/city.yaml && grep -q "^  files: \[\"$PWD/plain.csv\"\]" files/city.yaml &&
     [ "$(grep -c '^#*lamps:' files/city.yaml)" = 1 ]
 result $? "files that init is told are found from the recipe" "$(cat files/city.yaml)"
+grep -q "draw it: $program render $PWD/files/city.yaml" out
+result $? "init shows the program as it was called" "$(cat out)"
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\100\040\200\040\100\200\201' >sky.hdr
+run render city.gml --infer-lamps --lamp-lumens 1000000 --lamp-profile lamp.ies --environment sky.hdr \
+    --environment-light --environment-lux 12000 --frames 1 --size 48x32 -o a.png
+grep -Eq 'lamps 1 \(1,000 klm\), windows 28 \([0-9]\.[0-9]+ klm\)' out &&
+    grep -Eq 'profiles  lamp.ies [0-9]+$' out &&
+    grep -q 'map       sky.hdr, 2 pixels wide, as background and light: 12,000 lx on open ground' out
+result $? "the summary tells flux in whole numbers, and names the files of lamps and of the map" "$(cat out)"
 run init said city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet
 draw said.exr said/city.yaml --size 48x32 --view aerial
 draw words.exr city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet --size 48x32 --view aerial

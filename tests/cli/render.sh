@@ -265,6 +265,6 @@ expect "only where there are volumes" 2 'influence-obj needs --candidates influe
     --influence-obj volumes.obj
 expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates influence -o b.png \
     --influence-obj volumes.ply
-expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates influence -o b.png \
-    --influence-obj gone/volumes.obj
+expect "in a folder that is there" 1 'its folder [^ ]* is not there: make it first' render $small \
+    --candidates influence -o b.png --influence-obj gone/volumes.obj
 finish
