@@ -232,6 +232,7 @@ typedef struct geo_features {
     uint64_t total[GEO_DIMENSIONS];  /* by geometry; of OpenStreetMap points alone */
     uint64_t unread[GEO_DIMENSIONS]; /* of them: sets of points, lines and areas that are no lamps */
     uint64_t buildings, streets;     /* ways and relations of OpenStreetMap that are not read */
+    uint64_t parts;                  /* of these buildings: parts, which lie in the outline of another */
     bool any;                        /* the box is that of the unread ones, where the file holds no lamps */
     double lo[2], hi[2];
 } geo_features;

@@ -74,17 +74,26 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
 
 /* ---- what is not read ---- */
 
+/* By geometry, then of OpenStreetMap. What is left of buildings and streets where they are read has causes of its own.
+ */
+enum { BUILDINGS = GEO_DIMENSIONS, STREETS, PARTS, OUTLINES, STREETS_LEFT, UNREAD };
 static const struct {
     const char *one, *many, *reason, *reason_with_roads;
-} unread[] = {
+} unread[UNREAD] = {
     [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
     [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read",
                     "line that is not read: of maps only lamps and roads are read" },
     [GEO_AREAS] = { "polygon", "polygons",
                     "polygon that is not read: of maps only lamps are, and with --footprints buildings" },
-    [GEO_DIMENSIONS] = { "building", "buildings", "building that is not read: --footprints does" },
-    { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read",
-      "street or path that is an area or not in use, not read" },
+    [BUILDINGS] = { "building", "buildings", "building that is not read: --footprints does" },
+    [STREETS] = { "street or path", "streets and paths",
+                  "street or path that is not read: of maps only lamps are read" },
+    [PARTS] = { "part of a building, which lies in its outline", "parts of buildings, which lie in outlines",
+                "part of a building, which lies in its outline, not read" },
+    [OUTLINES] = { "outline that is not whole or underground", "outlines that are not whole or underground",
+                   "outline of a building that is not whole or underground, not read" },
+    [STREETS_LEFT] = { "street or path that is an area or not in use", "streets and paths that are areas or not in use",
+                       "street or path that is an area or not in use, not read" },
 };
 
 static const char *reason_of(const lamp_writer *w, int what) {
@@ -117,28 +126,41 @@ static void put_count(char text[32], uint64_t n) {
 /* Says once what of the map is not read; the report of whoever inspects it tells the same. How many there are. */
 static uint64_t tell_unread(lamp_writer *w) {
     const geo_features *f = &w->seen;
-    const uint64_t counts[] = { f->unread[GEO_POINTS], f->unread[GEO_LINES], f->unread[GEO_AREAS], f->buildings,
-                                f->streets };
-    char list[240] = "", number[32];
-    uint64_t sum = 0;
-    geo_issues_add(w->sink->issues, GEO_SKIPPED,
-                   w->sink->footprint ? "part of a building, or outline that is not whole, not read"
-                                      : unread[GEO_DIMENSIONS].reason,
-                   f->buildings, "");
-    geo_issues_add(w->sink->issues, GEO_SKIPPED, reason_of(w, GEO_DIMENSIONS + 1), f->streets, "");
-    for (size_t i = 0, n = 0; i < NOC_COUNT(counts); i++) {
+    const geo_sink *sink = w->sink;
+    bool blocks = sink->footprint != NULL, roads = sink->road != NULL;
+    uint64_t parts = NOC_MIN(f->parts, f->buildings);
+    const uint64_t counts[UNREAD] = {
+        f->unread[GEO_POINTS],
+        f->unread[GEO_LINES],
+        f->unread[GEO_AREAS],
+        blocks ? 0 : f->buildings,
+        roads ? 0 : f->streets,
+        blocks ? parts : 0,
+        blocks ? f->buildings - parts : 0,
+        roads ? f->streets : 0,
+    };
+    char list[400] = "", kinds[80] = "", number[32];
+    uint64_t sum = 0, strange = 0;
+    for (int i = 0, n = 0; i < UNREAD; i++) {
         if (!counts[i])
             continue;
         put_count(number, counts[i]);
-        n += (size_t)noc_snprintf(list + n, sizeof(list) - n, "%s%s %s", sum ? ", " : "", number,
-                                  counts[i] == 1 ? unread[i].one : unread[i].many);
+        n += noc_snprintf(list + n, sizeof(list) - (size_t)n, "%s%s %s",
+                          !sum        ? ""
+                          : i < PARTS ? ", "
+                                      : "; ",
+                          number, counts[i] == 1 ? unread[i].one : unread[i].many);
         sum += counts[i];
+        strange += i < PARTS ? counts[i] : 0; /* kinds of which nothing is read */
+        if (i >= GEO_DIMENSIONS)
+            geo_issues_add(sink->issues, GEO_SKIPPED, reason_of(w, i), counts[i], "");
     }
-    bool outlines = f->unread[GEO_AREAS] || f->buildings;
-    if (sum && !w->sink->inspect)
-        noc_warn(w->sink->log, "%s: %s %s not read: of maps only lamps%s are read%s", w->place, list,
-                 sum == 1 ? "is" : "are", w->sink->road ? " and roads" : "",
-                 outlines ? ", and with --footprints buildings" : "");
+    if (strange)
+        noc_snprintf(kinds, sizeof(kinds), ": of maps only lamps%s%s are read%s", roads ? " and roads" : "",
+                     blocks ? " and buildings" : "",
+                     !blocks && (f->unread[GEO_AREAS] || f->buildings) ? ", and with --footprints buildings" : "");
+    if (sum && !sink->inspect)
+        noc_warn(sink->log, "%s: %s %s not read%s", w->place, list, sum == 1 ? "is" : "are", kinds);
     return sum;
 }
 

@@ -8,14 +8,14 @@
 #define MOST_BLOCK (32 << 20)
 
 /* What a text is as a key, and what as a value. */
-enum { KEY_BUILDING = 1, KEY_STREET = 2, VALUE_NO = 4, VALUE_LAMP = 8 };
+enum { KEY_BUILDING = 1, KEY_STREET = 2, VALUE_NO = 4, VALUE_LAMP = 8, KEY_PART = 16 };
 
 static unsigned text_kind(const char *text, size_t size) {
     static const struct {
         const char *text;
         unsigned kind;
     } known[] = {
-        { "building", KEY_BUILDING }, { "building:part", KEY_BUILDING },
+        { "building", KEY_BUILDING }, { "building:part", KEY_PART },
         { "highway", KEY_STREET },    { "area:highway", KEY_STREET },
         { "no", VALUE_NO },           { "street_lamp", VALUE_LAMP },
     };
@@ -28,15 +28,18 @@ static unsigned text_kind(const char *text, size_t size) {
 static osm_way way_of(unsigned key, unsigned value) {
     if (value & VALUE_NO)
         return OSM_NEITHER;
-    return key & KEY_BUILDING ? OSM_BUILDING : key & KEY_STREET && !(value & VALUE_LAMP) ? OSM_STREET : OSM_NEITHER;
+    if (key & (KEY_BUILDING | KEY_PART))
+        return key & KEY_BUILDING ? OSM_BUILDING : OSM_PART;
+    return key & KEY_STREET && !(value & VALUE_LAMP) ? OSM_STREET : OSM_NEITHER;
 }
 
 osm_way osm_way_of(const char *key, const char *value) {
     return way_of(text_kind(key, strlen(key)), text_kind(value, strlen(value)));
 }
 
-static void count(geo_features *features, osm_way way) {
-    features->buildings += way == OSM_BUILDING;
+void osm_count_way(geo_features *features, osm_way way) {
+    features->buildings += way >= OSM_PART;
+    features->parts += way == OSM_PART;
     features->streets += way == OSM_STREET;
 }
 
@@ -74,7 +77,7 @@ static void on_end(void *user, const char *name) {
     xml_count *x = user;
     if (strcmp(name, "way") != 0 && strcmp(name, "relation") != 0)
         return;
-    count(x->features, x->way);
+    osm_count_way(x->features, x->way);
     x->within = false;
 }
 
@@ -185,7 +188,7 @@ static bool read_block(wire block, text_kinds *kinds, geo_features *features) {
     for (wire w = block; get_field(&w, &f);)
         while (f.number == GROUP && get_field(&f.bytes, &member))
             if (member.number == WAY || member.number == RELATION)
-                count(features, read_way(member.bytes, kinds));
+                osm_count_way(features, read_way(member.bytes, kinds));
     return true;
 }
 

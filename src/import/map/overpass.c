@@ -70,8 +70,7 @@ static void count_way(const json_t *element, geo_features *features) {
         osm_way one = osm_way_of(key, json_string_value(value));
         way = NOC_MAX(way, one);
     }
-    features->buildings += way == OSM_BUILDING;
-    features->streets += way == OSM_STREET;
+    osm_count_way(features, way);
 }
 
 bool overpass_collect(json_t *element, overpass_tags *list) {

@@ -1,6 +1,7 @@
 /* Shapes of maps: areas that are buildings, water, lawns or squares, lines that are roads. */
 #include "import/map/features.h"
 #include "import/map/outlines.h"
+#include "import/map/osm_ways.h"
 #include "import/map/roads.h"
 
 #if NOC_HAVE_GDAL
@@ -67,10 +68,21 @@ static noc_status emit_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType t
     return status;
 }
 
+/* Of OpenStreetMap: is the area one of its streets and paths, as osm_count_ways counts them? */
+static bool is_street(const map_reading *m) {
+    osm_way way = OSM_NEITHER;
+    for (size_t i = 0; i < m->tags.tags.len; i++) {
+        osm_way one = osm_way_of(m->tags.tags.data[i].key, m->tags.tags.data[i].value);
+        way = NOC_MAX(way, one);
+    }
+    return way == OSM_STREET;
+}
+
 static noc_status read_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
     const geo_sink *sink = m->writer.sink;
     int verdict = outline_verdict(m->tags.tags.data, m->tags.tags.len);
     noc_class cls = verdict < 0 && sink->area ? area_class(m->tags.tags.data, m->tags.tags.len) : NOC_CLASS_OTHER;
+    m->writer.streets += cls != NOC_CLASS_OTHER && is_street(m);
     if (cls != NOC_CLASS_OTHER)
         return emit_area(m, g, type, NULL, cls);
     if (!sink->footprint || verdict == 0 || (verdict < 0 && !m->building_layer))
