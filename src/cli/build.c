@@ -199,7 +199,7 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     noc_recipe_lists(args->common.recipe, &args->import);
     args->import.threads = args->threads;
     noc_status status = noc_scene_load(scene, args->common.inputs, args->common.input_count, &args->import, &report);
-    status = status ? status : cli_switch_built(&args->common, scene, &args->import);
+    status = status ? status : cli_switch_built(&args->common, scene, &args->import, report);
     cli_progress_clear();
     if (!status && cli_interrupted())
         status = NOC_ERR_CANCELLED;

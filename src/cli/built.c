@@ -79,7 +79,8 @@ int cli_check_built(const cli_command *command, const cli_args *args, const noc_
     return status;
 }
 
-noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import) {
+noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import,
+                            noc_report *report) {
     bool windows = false, cars = false;
     for (size_t i = 0; i < args->said_anew; i++) {
         windows = windows || of_windows(args->given[i]);
@@ -90,5 +91,6 @@ noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_im
     noc_status status = windows ? noc_scene_set_windows(scene, &import->window) : NOC_OK;
     if (!status && cars)
         status = noc_scene_set_time(scene, import->cars.time);
-    return status ? status : noc_scene_commit(scene);
+    status = status ? status : noc_scene_commit(scene);
+    return status || !windows || !report ? status : noc_report_follow(report, scene);
 }

@@ -137,8 +137,9 @@ bool cli_is_built(const cli_args *args);
 bool cli_has_map(const cli_args *args, const noc_import_params *import);
 /* Refuses what its build has decided otherwise, of options and of a recipe around it: CLI_OK or CLI_USAGE. */
 int cli_check_built(const cli_command *command, const cli_args *args, const noc_import_params *import);
-/* Its windows and cars, as the words say; nothing where they say nothing of them. */
-noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import);
+/* Its windows and cars, as the words say, and what the report tells of them; nothing where they say nothing of them. */
+noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import,
+                            noc_report *report);
 
 /* lights.c */
 /* "city.yaml:12 3,963, city.yaml:14 40": how many lamps each rule matched; "none". free() it. */

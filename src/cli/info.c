@@ -286,6 +286,15 @@ static noc_status inspect_builtin(const info_args *args, const char *name, noc_l
     return status ? status : noc_scene_commit(*scene);
 }
 
+/* A city that is built is loaded as a whole, so that its windows are told as they are switched. */
+static noc_status inspect_built(const info_args *args, const char *path, noc_log *log, noc_report **report) {
+    noc_scene *scene = noc_scene_create(log);
+    noc_status status = scene ? noc_scene_load(scene, &path, 1, &args->import, report) : NOC_ERR_MEMORY;
+    status = status ? status : cli_switch_built(&args->common, scene, &args->import, *report);
+    noc_scene_destroy(scene);
+    return status;
+}
+
 static noc_status inspect(const info_args *args, const char *path, noc_log *log, bool first) {
     noc_report *report = NULL;
     noc_scene *scene = NULL;
@@ -305,6 +314,8 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
     }
     if (cli_builtin(path))
         status = inspect_builtin(args, cli_builtin(path), log, &scene);
+    else if (noc_built_is(path))
+        status = inspect_built(args, path, log, &report);
     else
         status = noc_inspect(log, path, &args->import, &report);
     cli_progress_clear();

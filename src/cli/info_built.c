@@ -1,6 +1,28 @@
 /* nocturne info of a built city: its head. What it is built from is told like any files. */
 #include "info.h"
 
+#include <string.h>
+
+/* What a section holds, of those that grow with a city; NULL: its name is a word. */
+static const char *section_words(const char *name) {
+    static const char *const words[][2] = {
+        { "lightnam", "names of lights" },
+        { "corners", "corners of triangles" },
+        { "shown", "lights of triangles" },
+        { "made", "lights before their groups" },
+        { "walls", "which walls have windows" },
+        { "tables", "luminaires' intensities" },
+        { "material", "materials" },
+        { "sky", "map around" },
+        { "texels", "images" },
+        { "panes", "windows' files" },
+    };
+    for (size_t i = 0; i < sizeof(words) / sizeof(*words); i++)
+        if (!strcmp(words[i][0], name))
+            return words[i][1];
+    return name;
+}
+
 static void print_text(const char *path, const noc_built_info *file) {
     char a[64], name[400];
     printf("%s\n", noc_text_clean(name, sizeof(name), path));
@@ -8,7 +30,8 @@ static void print_text(const char *path, const noc_built_info *file) {
     printf("  %-11s %s\n", "size", noc_text_bytes(a, file->bytes));
     for (size_t i = 0; i < file->section_count; i++)
         if (file->sections[i].bytes >= file->bytes / 100)
-            printf("    %-13s %10s\n", file->sections[i].name, noc_text_bytes(a, file->sections[i].bytes));
+            printf("    %-26s %10s\n", section_words(file->sections[i].name),
+                   noc_text_bytes(a, file->sections[i].bytes));
 }
 
 static void print_json(const char *path, const noc_built_info *file) {

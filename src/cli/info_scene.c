@@ -9,7 +9,7 @@ noc_status info_load(const info_args *args, const char *const *inputs, size_t co
     *city = (info_city){ .scene = noc_scene_create(log) };
     noc_status status =
         city->scene ? noc_scene_load(city->scene, inputs, count, &args->import, &city->report) : NOC_ERR_MEMORY;
-    status = status ? status : cli_switch_built(&args->common, city->scene, &args->import);
+    status = status ? status : cli_switch_built(&args->common, city->scene, &args->import, city->report);
     city->seconds = cli_now() - started;
     cli_progress_clear();
     noc_scene_get_info(city->scene, &city->info);

@@ -210,7 +210,7 @@ static noc_status load(render_job *job) {
         return status;
     cli_nothing_to_keep(true);
     status = noc_scene_load(job->scene, args->common.inputs, args->common.input_count, &args->import, &job->report);
-    status = status ? status : cli_switch_built(&args->common, job->scene, &args->import);
+    status = status ? status : cli_switch_built(&args->common, job->scene, &args->import, job->report);
     cli_nothing_to_keep(false);
     cli_progress_clear();
     noc_scene_get_info(job->scene, &job->scene_info);

@@ -128,6 +128,7 @@ static noc_camera camera;
     P(noc_report_get_totals(NULL, NULL), true)                                                                         \
     P(0, !noc_report_get_lamp(NULL, 0))                                                                                \
     P(0, !noc_report_get_rule(NULL, 0) && !noc_report_get_group(NULL, 0))                                              \
+    P(0, noc_report_follow(NULL, scene) == NOC_ERR_ARGUMENT)                                                           \
     P(noc_report_destroy(NULL), true)                                                                                  \
     P(0, noc_scene_load(NULL, (const char *[]){ "a" }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                             \
     P(0, noc_scene_load(noc_scene_create(NULL), NULL, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                              \

@@ -108,6 +108,20 @@ run render over.yaml -q --frames 2 -o built.exr
 same "a recipe of a built city switches it, too" files.exr built.exr
 printf 'nocturne: 1\ninputs: [rain.noct]\ngroups: { a: { on: off } }\n' >over.yaml
 expect "its rules come too late" 2 'groups of a recipe: .*rain.noct is built already' render over.yaml -o a.png
+for options in '--hour 3' '--window-lit 0.2 --hour 23.5' '--window-lit 1'; do
+    # shellcheck disable=SC2086
+    run info rain.yaml --scene $options && sed -n '/^scene of/,$p' out | grep -E 'windows  |groups' >files.told
+    # shellcheck disable=SC2086
+    run info rain.noct --scene $options && sed -n '/^scene of/,$p' out | grep -E 'windows  |groups' >built.told
+    [ "$(wc -l <files.told)" = 2 ] && cmp -s files.told built.told
+    result $? "lit windows and their flux are told with $options"
+    # shellcheck disable=SC2086
+    run info rain.noct $options && grep -q "$(sed -n 's/ *windows *\([^;]*lit\),.*/\1/p' files.told)" out
+    result $? "of the file, too"
+done
+run info city.noct --each-lamp
+[ "$(head -n 1 out | cut -d, -f 1-2)" = name,placed ]
+result $? "a built city's table of lamps is a table alone"
 run render city.noct --animate --path flight --frames 2 --samples 1 -q -o 'f-%d.png'
 result "$status" "with the recipe's paths"
 run build city.noct --window-lit 0.2 -o again.noct -q

@@ -77,7 +77,9 @@ static const field fields[] = {
     FIELD(DOUBLE, road_metres_lit, 1),
 };
 
-uint64_t built_report_layout(void) { return noct_sum(fields, sizeof(fields)) + sizeof(noc_report_file); }
+uint64_t built_report_layout(void) {
+    return noct_sum(fields, sizeof(fields)) + sizeof(noc_report_file) + sizeof(report_panes);
+}
 
 /* Of a field's values; items of an array lie side by side. */
 static size_t item_size(const field *f) { return f->size / f->count; }
@@ -156,6 +158,7 @@ void built_write_report(noct_writer *w, const noc_report *report) {
         put_lines(w, &report->files.data[i]);
     }
     noct_end(w);
+    noct_put_array(w, "panes", report->panes.data, report->panes.len, sizeof(*report->panes.data));
 }
 
 /* ---- reading ---- */
@@ -255,5 +258,10 @@ noc_status built_read_report(noct_file *f, noc_report *report) {
     if (report->arena.refused)
         return noct_no_memory(f);
     noct_read_whole(f, &c, "report");
-    return f->status;
+    size_t count;
+    const report_panes *panes = noct_array(f, "panes", sizeof(*panes), &count);
+    for (size_t i = 0; i < count; i++)
+        if (panes[i].file >= report->files.len || panes[i].counts > 1)
+            return noct_wrong(f, "windows %zu are of no file", i);
+    return f->status || array_append(&report->panes, panes, count) ? f->status : noct_no_memory(f);
 }

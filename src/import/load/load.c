@@ -411,6 +411,17 @@ static noc_status load_built(importer *im, const char *path) {
     return built_read(im, path);
 }
 
+/* Files of windows: from their numbers among the inputs to those in the report. */
+static void number_panes(importer *im) {
+    for (size_t i = 0; im->report && i < im->report->panes.len; i++) {
+        report_panes *p = &im->report->panes.data[i];
+        uint32_t number = 0;
+        for (size_t k = 0; k < p->file; k++)
+            number += im->inputs[k].started;
+        p->file = number;
+    }
+}
+
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
                        const noc_import_params *params, bool inspect, noc_report **report) {
     const noc_import_params defaults = noc_import_default_params();
@@ -477,9 +488,11 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (!status && !inspect)
-        status = luminaires_report(&im);
+        status = report_groups(im.report, scene);
     if (status == NOC_ERR_CANCELLED)
         noc_cancelled(scene->log, "import: cancelled");
+    if (!built)
+        number_panes(&im);
     for (size_t i = 0; i < im.input_count; i++) {
         if (im.inputs[i].started && !report_add(im.report, &im.inputs[i].file, im.inputs[i].issues) && !status)
             status = noc_no_memory(scene->log, im.inputs[i].path);

@@ -300,7 +300,12 @@ int luminaires_group(importer *im, const struct lamp_subject *of);
 void luminaires_take(importer *im, const input *in, size_t first_light, size_t first_mesh);
 noc_status luminaires_finish(importer *im); /* groups begin as they are said to; idle rules are told */
 noc_status luminaires_say(importer *im);    /* what params say of groups at the end; all of a built city */
-noc_status luminaires_report(importer *im); /* the groups, once they have begun */
+
+/* Windows of the scene that follow each other there: whose file they are of, and whether each counts as a window, or is
+ * a further pane of one that does. */
+typedef struct report_panes {
+    uint32_t file, counts, panes;
+} report_panes;
 
 /* each_lamp.c: what the report tells of each lamp, where params ask for it. */
 /* A lamp is stood next, as the rules have it. matched: places of the rules. in NULL: it is placed by a rule, and what
@@ -318,6 +323,7 @@ struct noc_report {
     size_t group_count;
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
+    NOC_ARRAY(report_panes) panes; /* files are numbers of inputs until all are reported */
     size_t lamps_inferred;
     size_t road_cars; /* along roads of maps */
     size_t roads_drawn;
@@ -330,6 +336,10 @@ noc_report *report_create(void); /* NULL: memory was refused */
 /* Adds the file with the issues' lines; false, and the file is not in it, where memory is refused to it or was to the
  * issues. */
 bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) NOC_MUST_USE;
+/* One more window of the scene, of that file; false: memory was refused. */
+bool report_pane(noc_report *report, size_t file, bool counts) NOC_MUST_USE;
+/* Groups of lights, as the scene has them. */
+noc_status report_groups(noc_report *report, const noc_scene *scene);
 /* Counts what the lamp does not tell. */
 void report_assumed(noc_report_file *file, const geo_lamp *lamp);
 /* The error that --strict makes of what was left out or guessed at; NOC_OK where nothing was. */

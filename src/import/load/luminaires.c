@@ -346,22 +346,6 @@ noc_status luminaires_finish(importer *im) {
     return status ? status : luminaires_say(im);
 }
 
-noc_status luminaires_report(importer *im) {
-    size_t count = noc_scene_groups(im->scene, NULL, 0);
-    noc_group_info *groups = arena_alloc(&im->report->arena, count * sizeof(*groups));
-    if (!groups)
-        return noc_no_memory(im->log, "groups");
-    noc_scene_groups(im->scene, groups, count);
-    for (size_t i = 0; i < count; i++) {
-        groups[i].name = arena_strdup(&im->report->arena, groups[i].name); /* the scene's go with it */
-        if (!groups[i].name)
-            return noc_no_memory(im->log, "groups");
-    }
-    im->report->groups = groups;
-    im->report->group_count = count;
-    return NOC_OK;
-}
-
 noc_status noc_scene_say_group(noc_scene *scene, int group, const char *text) {
     float scale[3] = { 0 }, rgb[3];
     bool scaled = false, coloured = false, own = false;

@@ -41,8 +41,53 @@ void noc_report_destroy(noc_report *report) {
         return;
     array_free(&report->lamps);
     array_free(&report->files);
+    array_free(&report->panes);
     arena_free(&report->arena);
     free(report);
+}
+
+bool report_pane(noc_report *report, size_t file, bool counts) {
+    report_panes *last = report->panes.len ? &report->panes.data[report->panes.len - 1] : NULL;
+    if (last && last->file == file && last->counts == counts) {
+        last->panes++;
+        return true;
+    }
+    return array_push(&report->panes, ((report_panes){ (uint32_t)file, counts, 1 }));
+}
+
+noc_status report_groups(noc_report *report, const noc_scene *scene) {
+    size_t count = noc_scene_groups(scene, NULL, 0);
+    noc_group_info *groups = arena_alloc(&report->arena, count * sizeof(*groups));
+    if (!groups)
+        return noc_no_memory(scene->log, "groups");
+    noc_scene_groups(scene, groups, count);
+    for (size_t i = 0; i < count; i++) {
+        groups[i].name = arena_strdup(&report->arena, groups[i].name); /* the scene's go with it */
+        if (!groups[i].name)
+            return noc_no_memory(scene->log, "groups");
+    }
+    report->groups = groups;
+    report->group_count = count;
+    return NOC_OK;
+}
+
+noc_status noc_report_follow(noc_report *report, const noc_scene *scene) {
+    if (!report || !scene)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    noc_scene_lock_read(scene);
+    for (size_t i = 0; i < report->files.len && report->panes.len; i++)
+        report->files.data[i].windows.lit = 0;
+    for (size_t i = 0, w = 0; i < report->panes.len; i++) {
+        const report_panes *p = &report->panes.data[i];
+        for (size_t end = w + p->panes; w < end && w < scene->windows.len; w++) {
+            noc_light_record r = noc_light_made(scene, scene->windows.data[w].light);
+            bool lit = !scene->windows.data[w].removed && (r.e[0] > 0 || r.e[1] > 0 || r.e[2] > 0);
+            if (p->file < report->files.len)
+                report->files.data[p->file].windows.lit += p->counts && lit;
+        }
+    }
+    noc_scene_unlock_read(scene);
+    return report_groups(report, scene);
 }
 
 static void add_windows(noc_window_counts *to, const noc_window_counts *from) {

@@ -37,7 +37,8 @@ typedef struct scratch {
 typedef struct maker {
     importer *im;
     const noc_window_params *params;
-    int group; /* of the windows of the building that is taken */
+    int group;    /* of the windows of the building that is taken */
+    size_t input; /* its file */
     city_cover *cover;
     noc_pool *pool;
     scratch *scratch;      /* [threads] */
@@ -129,8 +130,9 @@ static bool is_lit(const maker *m, const city_window *w) {
     return (double)w->level < noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
 }
 
+/* counts: as a window, and is no further pane of one. */
 static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind kind, const uint32_t *triangles,
-                     size_t count) {
+                     size_t count, bool counts) {
     noc_pane pane = { .triangles = triangles,
                       .triangle_count = count,
                       .shape = { .kind = kind, .group = m->group },
@@ -139,6 +141,10 @@ static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind ki
     memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
     memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
     memcpy(pane.window.emission, w->emission, sizeof(w->emission));
+    if (!report_pane(m->im->report, m->input, counts)) {
+        noc_scene_out_of_memory(m->im->scene);
+        return false;
+    }
     return noc_scene_add_window(m->im->scene, mesh, &pane);
 }
 
@@ -168,7 +174,7 @@ static noc_status add_mesh(maker *m, const char *id, const city_window_list *lis
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     for (size_t i = 0; i < list->len; i++) {
         const uint32_t both[2] = { 2 * (uint32_t)i, 2 * (uint32_t)i + 1 };
-        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2))
+        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2, true))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -183,7 +189,7 @@ static noc_status take_own(maker *m, const own_mesh *o, noc_window_counts *count
         counts->own += p->leads;
         counts->lit += p->leads && is_lit(m, &p->window);
         if (!add_pane(m, (int)o->mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
-                      own->triangles.data + p->first, p->count))
+                      own->triangles.data + p->first, p->count, p->leads))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -251,6 +257,7 @@ static noc_status take_building(maker *m, const taken_building *b, found_buildin
     input *in = &m->im->inputs[b->input];
     noc_window_counts *counts = &in->file.windows;
     m->group = luminaires_group(m->im, &(lamp_subject){ .cls = "window", .file = in->path });
+    m->input = b->input;
     noc_status status = found->no_memory ? no_memory(m->im) : NOC_OK;
     for (size_t i = 0; i < found->meshes.len && !status; i++)
         status = take_own(m, &found->meshes.data[i], counts);
