@@ -31,7 +31,8 @@ const cli_command cli_init = {
 
 /* What the files hold together. */
 typedef struct found {
-    bool builtin;
+    bool builtin, models; /* models: of buildings, or meshes */
+    size_t outlines;      /* of buildings in maps */
     size_t lamps, polygons[NOC_CLASS_COUNT], without_crs;
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT];
 } found;
@@ -64,14 +65,21 @@ static char *relative(const char *folder, const char *path) {
 
 /* ---- what it says ---- */
 
+/* Is what it holds of buildings outlines of a map? */
+static bool has_outlines(const noc_report_file *file) { return file->buildings && !file->polygons && !file->triangles; }
+
 /* What an input holds, which may be a folder of files. */
 static void print_remark(FILE *out, const noc_report *report) {
     const noc_report_file *first = noc_report_get_file(report, 0);
     size_t files = noc_report_file_count(report), buildings = 0, polygons = 0, triangles = 0, lamps = 0;
+    size_t outlines = 0, roads = 0;
+    double metres = 0;
     char a[64], crs[100];
     for (size_t i = 0; i < files; i++) {
         const noc_report_file *file = noc_report_get_file(report, i);
-        buildings += file->buildings;
+        *(has_outlines(file) ? &outlines : &buildings) += file->buildings;
+        roads += file->roads;
+        metres += file->road_metres;
         polygons += file->polygons;
         triangles += file->triangles;
         lamps += file->lamps;
@@ -89,6 +97,10 @@ static void print_remark(FILE *out, const noc_report *report) {
         fprintf(out, ", %s", noc_text_many(a, triangles, "triangle"));
     if (lamps)
         fprintf(out, ", %s", noc_text_many(a, lamps, "lamp"));
+    if (outlines)
+        fprintf(out, ", %s of buildings", noc_text_many(a, outlines, "outline"));
+    if (roads)
+        fprintf(out, ", %s (%.1f km)", noc_text_many(a, roads, "road"), metres / 1000);
     fputc('\n', out);
 }
 
@@ -96,6 +108,10 @@ static void add_found(found *all, const noc_report *report) {
     for (size_t k = 0; k < noc_report_file_count(report); k++) {
         const noc_report_file *file = noc_report_get_file(report, k);
         all->lamps += file->lamps;
+        all->outlines += has_outlines(file) ? file->buildings : 0;
+        /* terrain is no model, whose place an outline would leave */
+        bool terrain = file->polygons || (file->format && !strncmp(file->format, "GeoTIFF", 7));
+        all->models = all->models || (file->triangles && !terrain) || (file->buildings && !has_outlines(file));
         all->without_crs += file->has_extent && !(file->crs && *file->crs);
         for (int c = 0; c < NOC_CLASS_COUNT; c++)
             all->polygons[c] += file->polygons_by_class[c];
@@ -136,11 +152,16 @@ static void print_section(FILE *out, const init_args *args, const char *section,
 }
 
 /* What stands in no section, but for what protects who reads. */
-static void print_others(FILE *out, const init_args *args) {
+static void print_others(FILE *out, const init_args *args, const found *all) {
+    bool blocks = all->outlines && !all->models && !all->builtin && !cli_given(&args->common, "footprints");
+    char a[64];
     fputc('\n', out);
     for (const noc_option *o = noc_import_options(); o->name; o++)
-        if (!in_section(o, "lamp-", NULL) && !in_section(o, "window-", "Windows") &&
-            !in_section(o, "traffic-", "Traffic") && o->kind != NOC_OPTION_TEXTS && strcmp(o->group, "Reading"))
+        if (blocks && !strcmp(o->name, "footprints"))
+            fprintf(out, "footprints: true         # no input is a city model: %s of buildings become blocks\n",
+                    noc_text_many(a, all->outlines, "outline"));
+        else if (!in_section(o, "lamp-", NULL) && !in_section(o, "window-", "Windows") &&
+                 !in_section(o, "traffic-", "Traffic") && o->kind != NOC_OPTION_TEXTS && strcmp(o->group, "Reading"))
             print_key(out, args, o, o->name, "");
 }
 
@@ -202,7 +223,9 @@ static noc_status inspect(const init_args *args, const char *path, noc_log *log,
     *report = NULL;
     if (cli_builtin(path))
         return NOC_OK;
-    noc_status status = noc_inspect(log, path, &args->import, report);
+    noc_import_params import = args->import;
+    import.footprints = import.footprints || !cli_given(&args->common, "footprints"); /* to know of them */
+    noc_status status = noc_inspect(log, path, &import, report);
     cli_progress_clear();
     if (!status && !noc_report_file_count(*report))
         status = NOC_ERR_FORMAT;
@@ -245,7 +268,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
         return status;
     if (all.without_crs && !args->import.crs)
         fputs("\n# Some inputs name no CRS: crs puts them in place.", out);
-    print_others(out, args);
+    print_others(out, args, &all);
     print_lamps(out, args, &all);
     print_section(out, args, "windows", "window-", "Windows", false);
     print_section(out, args, "traffic", "traffic-", "Traffic",

@@ -110,6 +110,22 @@ for i in 0 1 2 3; do for k in 0 1 2 3 4 5 6 7; do printf 'l%d%d.csv, ' $i $k; do
 printf 'nocturne: 1\ninputs: [city.gml]\nlamps: { files: [%s] }\n' "$(sed 's/, $//' list)" >many.yaml
 printf 'traffic: { tracks: [%s] }\n' "$(sed 's/, $//; s/l/t/g' list)" >>many.yaml
 expect "a recipe that names 64 files" 1 'l00.csv: No such file' render many.yaml -o a.png
+if "$program" --version | grep -q gdal; then
+    cat >map.osm <<'END2'
+<?xml version='1.0'?><osm version='0.6'><node id='1' lat='48.1' lon='11.5'/><node id='2' lat='48.1' lon='11.5004'/>
+<node id='3' lat='48.1003' lon='11.5004'/><way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='1'/>
+<tag k='building' v='yes'/></way><way id='2'><nd ref='1'/><nd ref='3'/><tag k='highway' v='residential'/></way></osm>
+END2
+    run init map map.osm
+    grep -Eq 'map.osm".* 1 outline of buildings, 1 road \(0.0 km\)' map/city.yaml &&
+        grep -q '^footprints: true .*1 outline of buildings become blocks' map/city.yaml
+    result $? "outlines of a map alone are drawn" "$(cat map/city.yaml)"
+    run init both map.osm city.gml
+    grep -q '^#footprints: false' both/city.yaml
+    result $? "beside a city model they wait" "$(cat both/city.yaml)"
+else
+    skip "init of a map" "no GDAL"
+fi
 expect "init does not overwrite" 1 'is left alone' init town city.gml
 [ "$(find town | wc -l)" = 2 ]
 result $? "init leaves its recipe alone" "$(ls -a town)"
