@@ -111,8 +111,11 @@ static int check_film(const render_args *args, const cli_series *series) {
     if (!is_png(series))
         return cli_usage(&cli_render, "--mp4 is for .png: a film of linear pictures would be dark");
     char *ffmpeg = cli_find_ffmpeg(), *film = only ? cli_format("%s", args->output) : cli_series_film(series);
-    int status = cli_check_output(&cli_render, film, CLI_MP4, &args->common);
-    if (!status && !ffmpeg && (only || args->animation.film == NOC_SWITCH_ON)) {
+    bool asked = only || args->animation.film == NOC_SWITCH_ON;
+    struct stat st;
+    bool in_its_way = !stat(film, &st) && !S_ISREG(st.st_mode); /* plan_film() leaves it alone */
+    int status = asked || !in_its_way ? cli_check_output(&cli_render, film, CLI_MP4, &args->common) : CLI_OK;
+    if (!status && !ffmpeg && asked) {
         cli_error("%s: films are made by the program ffmpeg, which is not on PATH; -o frame-%%04d.png makes pictures",
                   film);
         status = CLI_FAILURE;
@@ -276,7 +279,8 @@ static void plan_film(animation *a) {
     if (only || a->args->film == NOC_SWITCH_ON || stat(a->film, &st) || cli_file_holds(a->film, FILM_COMMENT))
         return;
     if (!args->common.quiet)
-        cli_error("warning: %s is there, and is no film of an animation: it is left alone; --mp4 replaces it", a->film);
+        cli_error("warning: %s is there, and is no film of an animation: it is left alone%s", a->film,
+                  S_ISREG(st.st_mode) ? "; --mp4 replaces it" : "");
     free(a->film);
     a->film = NULL;
 }

@@ -60,12 +60,19 @@ typedef struct film {
 
 enum { PART = STDERR_FILENO + 1 }; /* its descriptor of that file */
 
-/* A new file, whatever had that name before: what a killed run left, or a link that leads elsewhere. */
+/* A new file, whatever had that name before: what a killed run left, or a link that leads elsewhere. Its descriptor is
+ * none of the standard ones, which may be closed here and are ffmpeg's own. */
 static int open_part(film *f) {
     if (unlink(f->making) && errno != ENOENT)
         return errno;
-    f->part = open(f->making, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    return f->part < 0 ? errno : 0;
+    int fd = open(f->making, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    f->part = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, PART);
+    int error = f->part < 0 ? errno : 0;
+    if (fd >= 0)
+        close(fd);
+    if (fd >= 0 && error)
+        unlink(f->making);
+    return error;
 }
 
 /* H.264 at a quality without visible loss, in the colours that players take a film's for; its sides must be even. */
@@ -77,6 +84,8 @@ static int start(film *f, const char *ffmpeg, double fps, const char *comment) {
                                 "-hide_banner",
                                 "-loglevel",
                                 "error",
+                                "-nostats",
+                                "-xerror", /* a picture that is damaged is no film without it */
                                 "-y",
                                 "-f",
                                 "image2pipe",
@@ -223,7 +232,8 @@ static bool publish(const film *f, const char *name) {
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment) {
     const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
-    film f = { .to = -1, .part = -1, .making = cli_format("%.*s.%.200s.part", (int)(base - name), name, base) };
+    film f = { .to = -1, .part = -1 };
+    f.making = cli_format("%.*s.%.200s.%ld.part", (int)(base - name), name, base, (long)getpid());
     struct sigaction before, ignore = { .sa_handler = SIG_IGN };
     sigaction(SIGPIPE, &ignore, &before); /* one that hangs up is an error, not our end */
     int unopened = open_part(&f), error = unopened ? unopened : start(&f, ffmpeg, fps, comment), ended = 0;

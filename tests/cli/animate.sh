@@ -105,15 +105,27 @@ test -z "$(find there -name '.*.part')"; result $? "and nothing else"
 
 # what stands in the film's way is no way to another file; and Ctrl-C ends it, whether it reads or not
 echo kept >elsewhere
-ln -s ../elsewhere there/.f.mp4.part
 printf '#!/bin/sh\nfor last; do :; done\ncat >"${last#file:}"\n' >bin/ffmpeg
-film -o there/f.mp4
+in_its_way() { # a command that takes the place of a run's unfinished film, and the film
+    # the run is the shell, so that its number is known
+    (export PATH="$PWD/bin:$path" && exec sh -c "$1"' "there/.$2.$$.part" && shift 2 && exec "$@"' sh "$1" "$2" \
+        "$program" render lamp.yaml --animate --frames 3 --samples 1 --fps 12.5 -o "there/$2") >out 2>err </dev/null
+    status=$?
+}
+in_its_way 'ln -s ../elsewhere' f.mp4
 test "$status" = 0 && test "$(cat elsewhere)" = kept && test ! -L there/f.mp4 && grep -aq IEND there/f.mp4
-result $? "a link of the unfinished film's name is not followed"
-mkdir there/.k.mp4.part
-film -o there/k.mp4
-test "$status" = 1 && grep -q 'there/.k.mp4.part: cannot be written' err && rmdir there/.k.mp4.part
+result $? "a link of the unfinished film's name is not followed" "$(cat err)"
+in_its_way mkdir k.mp4
+test "$status" = 1 && grep -Eq 'there/.k.mp4.[0-9]+.part: cannot be written' err && rmdir there/.k.mp4.*.part
 result $? "nor is a folder" "$(cat err)"
+mkdir there/d.mp4
+film -o there/d-%d.png
+test "$status" = 0 && test "$(numbers there 'd-*.png')" = 3 && test -z "$(ls -A there/d.mp4)" &&
+    grep -q 'd.mp4 is there, and is no film of an animation: it is left alone$' err
+result $? "a folder in the place of a film that nobody asked for stays" "$(cat err)"
+expect "and is in the way of one that somebody did" 1 'there/d.mp4 is a folder' \
+    render lamp.yaml --animate --frames 3 --samples 1 --mp4 -o there/d-%d.png
+rm -r there/d.mp4 there/d-*
 printf '#!/bin/sh\ntouch started\nsleep 1000\n' >bin/ffmpeg
 interrupted_film() {
     rm -f started
@@ -130,10 +142,10 @@ interrupted_film() {
     status=$?
 }
 interrupted_film
-test "$status" = 130 && test ! -e there/.s.mp4.part; result $? "one Ctrl-C ends a film that hangs" "$status"
+test "$status" = 130 && test -z "$(find there -name '.*.part')"; result $? "one Ctrl-C ends a film that hangs" "$status"
 head -c 300000 /dev/zero >>there/s-1.png # more than a pipe holds
 interrupted_film
-test "$status" = 130 && test ! -e there/.s.mp4.part; result $? "and one that takes no pictures" "$status"
+test "$status" = 130 && test -z "$(find there -name '.*.part')"; result $? "and one that takes no pictures" "$status"
 rm -r there/s-* started
 without() { (PATH=/nowhere && export PATH && exec "$program" "$@") >out 2>err </dev/null; status=$?; }
 without render lamp.yaml --animate --frames 3 --samples 1 -o there/g-%d.png
