@@ -46,14 +46,14 @@ static char *relative(const char *folder, const char *path) {
     for (; folder[n] && folder[n] == path[n]; n++)
         if (folder[n] == '/')
             common = n + 1;
-    if (common <= 1)
-        return cli_format("%s", path);
     if (!folder[n] && !path[n])
         return cli_format(".");
     if (!folder[n] && path[n] == '/') {
         const char *below = path + n + 1;
         return cli_format("%s%s", *below == '@' || cli_builtin(below) ? "./" : "", below);
     }
+    if (common <= 1)
+        return cli_format("%s", path);
     char *text = cli_format("%s", path + common);
     for (const char *c = folder + common; c; c = strchr(c, '/') ? strchr(c, '/') + 1 : NULL) {
         char *more = cli_format("../%s", text);
