@@ -98,9 +98,9 @@ expect "compare with a bad ceiling" 2 'ceiling: "0" is outside' compare a.exr b.
 expect "compare to something else than PNG" 2 'must end in .png' compare a.exr b.exr -o d.exr
 
 expect "an instruction set that is none" 2 'isa: "mmx" is none of auto' render $c --isa mmx
-export NOCTURNE_ISA=mmx
 expect "light of a map that is not there" 2 '--environment-light needs a map around the city' render $c -o x.png \
     --environment-light
+export NOCTURNE_ISA=mmx
 expect "one in the environment" 1 'NOCTURNE_ISA: "mmx" is no instruction set' render $c -o x.png
 unset NOCTURNE_ISA
 
