@@ -278,11 +278,12 @@ typedef struct noc_report_rule {
 /* A light of a lamp, and what it was made of: noc_import_params.each_lamp. Texts are the report's, "" where there is
  * none. */
 typedef struct noc_report_lamp {
-    size_t light;        /* its index in the scene, for noc_scene_get_light, which tells the rest */
-    const char *file;    /* path of the input that holds it; "": it was placed by a rule */
-    const char *street;  /* name of the nearest road that has one, within 25 m */
-    const char *road;    /* what the nearest road is there: a value of OpenStreetMap's highway */
-    const char *rules;   /* places of those of noc_import_params.luminaires that matched: "a.yaml:4; a.yaml:7" */
+    size_t light;       /* its index in the scene, for noc_scene_get_light, which tells the rest */
+    const char *file;   /* path of the input that holds it; "": it was placed by a rule */
+    const char *street; /* name of the nearest road that has one, within 25 m; "" where no roads were read, as lamps are
+                         * those of a load that asks for no report */
+    const char *road;   /* what the nearest road is there: a value of OpenStreetMap's highway */
+    const char *rules;  /* places of those of noc_import_params.luminaires that matched: "a.yaml:4; a.yaml:7" */
     const char *profile; /* name of a built-in one, or of the file that a rule or lamp_profile says */
     double height;       /* m, of the light above its lamp's foot; NaN: there is no ground there */
     double direction;    /* degrees clockwise from the scene's y axis, to where the lamp faces */

@@ -271,6 +271,30 @@ static void test_each_lamp(void **state) {
     unload(&l);
 }
 
+/* Who asks for the report sees the lamps that others see, whether roads are read or not. */
+static void test_asking_changes_no_lamp(void **state) {
+    (void)state;
+    for (int infer = NOC_SWITCH_OFF; infer <= NOC_SWITCH_AUTO; infer++) {
+        noc_import_params params = noc_import_default_params();
+        params.infer_lamps = (noc_switch)infer;
+        loaded plain = load("map.osm", &params);
+        params.each_lamp = true;
+        loaded asked = load("map.osm", &params);
+        assert_int_equal(plain.lights, asked.lights);
+        assert_non_null(noc_report_get_lamp(asked.report, 5));
+        for (size_t i = 0; i < plain.lights; i++) {
+            noc_light_info a, b;
+            assert_int_equal(noc_scene_get_light(plain.scene, i, &a), NOC_OK);
+            assert_int_equal(noc_scene_get_light(asked.scene, i, &b), NOC_OK);
+            assert_memory_equal(a.light.position, b.light.position, sizeof(a.light.position));
+            assert_memory_equal(a.light.direction, b.light.direction, sizeof(a.light.direction));
+            assert_memory_equal(a.light.c0, b.light.c0, sizeof(a.light.c0));
+        }
+        unload(&plain);
+        unload(&asked);
+    }
+}
+
 /* Many points at once are where one by one they are; one without a place harms no other. */
 static void test_places_of_many(void **state) {
     (void)state;
@@ -289,9 +313,10 @@ static void test_places_of_many(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads_of_a_map),   cmocka_unit_test(test_lamps_that_are_placed),
-        cmocka_unit_test(test_columns_of_a_map), cmocka_unit_test(test_each_lamp),
-        cmocka_unit_test(test_places_of_many),   cmocka_unit_test(test_what_idle_rules_may_mean),
+        cmocka_unit_test(test_roads_of_a_map),         cmocka_unit_test(test_lamps_that_are_placed),
+        cmocka_unit_test(test_columns_of_a_map),       cmocka_unit_test(test_each_lamp),
+        cmocka_unit_test(test_places_of_many),         cmocka_unit_test(test_what_idle_rules_may_mean),
+        cmocka_unit_test(test_asking_changes_no_lamp),
     };
     return cmocka_run_group_tests(tests, start, end);
 }

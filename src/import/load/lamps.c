@@ -367,7 +367,7 @@ static noc_status ask_roads(importer *im) {
     noc_status status = NOC_OK;
     if (im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && missing))
         status = road_lamps_add(im, roads);
-    if (luminaires_ask_roads(im))
+    if (luminaires_ask_roads(im) || im->params->each_lamp)
         im->roads_by_place = roads;
     else
         city_roads_destroy(roads);

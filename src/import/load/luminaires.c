@@ -156,9 +156,7 @@ void luminaires_free(luminaires *l) {
     free(l);
 }
 
-bool luminaires_ask_roads(const importer *im) {
-    return im->params->each_lamp || lamp_conditions_ask_roads(im->luminaires->conditions);
-}
+bool luminaires_ask_roads(const importer *im) { return lamp_conditions_ask_roads(im->luminaires->conditions); }
 
 /* ---- lamps ---- */
 
