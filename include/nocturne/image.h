@@ -37,7 +37,8 @@ typedef struct noc_display_params {
     double ev100;
     double compensation; /* stops added to the automatic exposure, positive is brighter; default 0 */
     noc_tonemap tonemap;
-    double white_kelvin; /* K; a black body of it is shown as the screen's white; default 6500, and so is 0 */
+    double white_kelvin; /* K, held to 2500..15000; a black body of it is shown as the screen's white; default 6500,
+                          * and so is 0 */
 } noc_display_params;
 
 #define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC) set(white_kelvin, 6500)

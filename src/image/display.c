@@ -120,11 +120,16 @@ double tonemap_curve(noc_tonemap tonemap, double x) {
     return NOC_MIN(x, 1);
 }
 
+/* Colder black bodies have no blue in Rec.709, by which the channel would be divided. */
+double display_white(const noc_display_params *params) {
+    return params && params->white_kelvin > 0 ? NOC_CLAMP(params->white_kelvin, 2500, 15000) : DISPLAY_WHITE;
+}
+
 /* White balance scales the channels, as cameras do (von Kries' rule with the screen's primaries). Luminance 1 of the
  * white that is asked for becomes luminance 1 of the screen's. */
 void display_init(display_map *d, const noc_display_params *params, double ev100) {
     float from[3], to[3];
-    noc_kelvin_rgb(params && params->white_kelvin > 0 ? params->white_kelvin : DISPLAY_WHITE, from);
+    noc_kelvin_rgb(display_white(params), from);
     noc_kelvin_rgb(DISPLAY_WHITE, to);
     d->tonemap = params ? params->tonemap : NOC_TONEMAP_FILMIC;
     for (int k = 0; k < 3; k++)

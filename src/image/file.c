@@ -79,7 +79,7 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
         shown.ev100 = ev100;
         meta_add(&list, "ev100", "%.4f", ev100);
         meta_add(&list, "tonemap", "%s", tonemap_name(shown.tonemap));
-        meta_add(&list, "white-balance", "%g K", shown.white_kelvin > 0 ? shown.white_kelvin : DISPLAY_WHITE);
+        meta_add(&list, "white-balance", "%g K", display_white(&shown));
     } else {
         meta_add(&list, "units", "cd/m2");
     }

@@ -38,7 +38,8 @@ typedef struct srgb8_table {
 void srgb8_table_init(srgb8_table *table);
 uint8_t srgb8_encode(const srgb8_table *table, float linear); /* the nearest code; clamps; NaN gives 0 */
 
-#define DISPLAY_WHITE 6500.0 /* K, where colours are shown as they are */
+#define DISPLAY_WHITE 6500.0                            /* K, where colours are shown as they are */
+double display_white(const noc_display_params *params); /* K that is shown as white; NULL: default */
 
 /* display.c: from cd/m2 to 8-bit sRGB, one pixel at a time. */
 typedef struct display_map {

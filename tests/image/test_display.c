@@ -172,6 +172,14 @@ static void white_is_balanced(void **state) {
         for (int k = 0; k < 3; k++)
             assert_true(abs(out[k] - as_is[k]) <= 1);
     }
+    /* beyond them, where a black body has no blue, it stays at the ends */
+    const double beyond[][2] = { { 1e-300, 2500 }, { 1500, 2500 }, { INFINITY, 15000 } };
+    for (int i = 0; i < 3; i++) {
+        display_map d[2];
+        for (int k = 0; k < 2; k++)
+            display_init(&d[k], &(noc_display_params){ .white_kelvin = beyond[i][k] }, 0.5);
+        assert_memory_equal(d[0].scale, d[1].scale, sizeof(d[0].scale));
+    }
 }
 
 static void linear_is_exact(void **state) {
