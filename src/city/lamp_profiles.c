@@ -84,7 +84,7 @@ static size_t chosen(const city_profiles *p, city_profile_kind kind, int ruled) 
 
 const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled) {
     size_t i = p ? chosen(p, kind, ruled) : 0;
-    return !p ? "" : p->of.data[i].name ? p->of.data[i].name : name_of(p, i);
+    return p ? name_of(p, i) : "";
 }
 
 bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light) {
