@@ -15,12 +15,7 @@
 #include <sys/stat.h>
 
 static char folder[] = "/tmp/nocturne-looks-XXXXXX";
-
-static inline const char *in_folder(const char *name) {
-    static char at[96];
-    snprintf(at, sizeof(at), "%s/%s", folder, name);
-    return at;
-}
+#include "../folder.h"
 
 static inline void write_bytes(const char *name, const void *bytes, size_t size) {
     FILE *f = fopen(in_folder(name), "wb");
@@ -28,7 +23,17 @@ static inline void write_bytes(const char *name, const void *bytes, size_t size)
     assert_true(fwrite(bytes, 1, size, f) == size && !fclose(f));
 }
 
-static inline void write_file(const char *name, const char *text) { write_bytes(name, text, strlen(text)); }
+/* A wall 5 m wide along y and high, at x = 0, whose polygon is p and whose ring is r, with an appearance. */
+#define GML_WALL(surface_data)                                                                                         \
+    "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "                    \
+    "xmlns:app='http://www.opengis.net/citygml/appearance/2.0' "                                                       \
+    "xmlns:bldg='http://www.opengis.net/citygml/building/2.0'><cityObjectMember><bldg:Building gml:id='b'>"            \
+    "<bldg:boundedBy><bldg:WallSurface><bldg:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon "      \
+    "gml:id='p'><gml:exterior><gml:LinearRing gml:id='r'><gml:posList srsDimension='3'>0 0 0 0 5 0 0 5 5 0 0 5 0 0 0"  \
+    "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"              \
+    "</bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy></bldg:Building></cityObjectMember>"                  \
+    "<app:appearanceMember><app:Appearance><app:surfaceDataMember>" surface_data "</app:surfaceDataMember>"            \
+    "</app:Appearance></app:appearanceMember></CityModel>"
 
 static inline void write_image(const char *name) {
     noc_image *image = noc_image_create(2, 2, NULL);

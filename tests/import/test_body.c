@@ -6,7 +6,9 @@
 
 #include <math.h>
 
-static char folder[] = "/tmp/noc-body-XXXXXX", lamps[300], told[1000], warned[1000];
+static char folder[] = "/tmp/noc-body-XXXXXX";
+#include "../folder.h"
+static char lamps[300], told[1000], warned[1000];
 static noc_log *log_;
 static noc_scene *scene;
 
@@ -15,16 +17,6 @@ static void hear(void *user, noc_log_level level, const char *text) {
         snprintf(told, sizeof(told), "%s", text);
     if (level == NOC_LOG_WARN)
         snprintf(warned, sizeof(warned), "%s", text);
-}
-
-static const char *write_file(const char *name, const char *text) {
-    static char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-    return path;
 }
 
 static noc_status load(const char *body, bool isolate) {
@@ -162,11 +154,9 @@ static int start(void **state) {
 }
 
 static int finish(void **state) {
-    char command[100];
     noc_scene_destroy(scene);
     noc_log_destroy(log_);
-    snprintf(command, sizeof(command), "rm -r %s", folder);
-    return system(command);
+    return remove_folder();
 }
 
 int main(void) {

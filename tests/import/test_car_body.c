@@ -6,21 +6,13 @@
 
 #include <math.h>
 
-static char folder[] = "/tmp/noc-car-XXXXXX", track[300], told[1000];
+static char folder[] = "/tmp/noc-car-XXXXXX";
+#include "../folder.h"
+static char track[300], told[1000];
 static noc_log *log_;
 static noc_scene *scene;
 
 static void hear(void *user, noc_log_level level, const char *text) { snprintf(told, sizeof(told), "%s", text); }
-
-static const char *write_file(const char *name, const char *text) {
-    static char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs(text, f);
-    fclose(f);
-    return path;
-}
 
 /* A plain at 3 m; the track goes 200 m north, from the middle. */
 static noc_status load(const char *body, double length, bool isolate) {
@@ -159,11 +151,9 @@ static int start(void **state) {
 }
 
 static int finish(void **state) {
-    char command[100];
     noc_scene_destroy(scene);
     noc_log_destroy(log_);
-    snprintf(command, sizeof(command), "rm -r %s", folder);
-    return system(command);
+    return remove_folder();
 }
 
 int main(void) {

@@ -11,16 +11,10 @@
 
 static char folder[] = "/tmp/noc-footprints-XXXXXX";
 #include "../folder.h"
+#include "../told.h"
 static noc_log *log_;
 static noc_scene *scene;
 static noc_report *report;
-static char told[4000]; /* warnings */
-
-static void hear(void *user, noc_log_level level, const char *text) {
-    size_t n = strlen(told);
-    if (level == NOC_LOG_WARN)
-        snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
 
 static void forget(void) {
     noc_report_destroy(report);
@@ -452,7 +446,7 @@ static void test_overpass_left_out(void **state) {
 }
 
 static int start(void **state) {
-    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
+    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
     return !mkdtemp(folder);
 }
 

@@ -8,15 +8,8 @@
 
 static char folder[] = "/tmp/noc-luminaires-XXXXXX";
 #include "../folder.h"
+#include "../told.h"
 static noc_log *log_;
-static char told[2000];
-
-static void keep(void *user, noc_log_level level, const char *text) {
-    (void)user;
-    size_t n = strlen(told);
-    if (level <= NOC_LOG_WARN)
-        snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
 
 /* Six lamps, 20 m apart. */
 static const char table[] = "ID;lon;lat;Lamp Type;Wattage;Mast_height_ft;Straße;Note;Arm\n"

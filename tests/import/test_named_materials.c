@@ -19,17 +19,8 @@ static const char json[] =
     "\"boundaries\":[[[0,1,2,3]],[[4,5,6,7]],[[0,4,5]]],\"semantics\":{\"surfaces\":[{\"type\":\"WallSurface\"},"
     "{\"type\":\"RoofSurface\"}],\"values\":[0,0,1]},\"material\":{\"t\":{\"values\":[0,1,0]}}}]}},"
     "\"vertices\":[[0,0,0],[0,5,0],[0,5,5],[0,0,5],[3,0,0],[3,5,0],[3,5,5],[3,0,5]]}";
-static const char gml[] =
-    "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "
-    "xmlns:app='http://www.opengis.net/citygml/appearance/2.0' "
-    "xmlns:bldg='http://www.opengis.net/citygml/building/2.0'><cityObjectMember><bldg:Building gml:id='b'>"
-    "<bldg:boundedBy><bldg:WallSurface><bldg:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon "
-    "gml:id='p'><gml:exterior><gml:LinearRing gml:id='r'><gml:posList srsDimension='3'>0 0 0 0 5 0 0 5 5 0 0 5 0 0 0"
-    "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
-    "</bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy></bldg:Building></cityObjectMember>"
-    "<app:appearanceMember><app:Appearance><app:surfaceDataMember><app:X3DMaterial gml:id='brick'><app:diffuseColor>"
-    "1 0 0</app:diffuseColor><app:target>#p</app:target></app:X3DMaterial></app:surfaceDataMember>"
-    "</app:Appearance></app:appearanceMember></CityModel>";
+static const char gml[] = GML_WALL("<app:X3DMaterial gml:id='brick'><app:diffuseColor>1 0 0</app:diffuseColor>"
+                                   "<app:target>#p</app:target></app:X3DMaterial>");
 
 static void write_files(void) {
     static const float quad[12] = { 0, 0, 0, 5, 0, 0, 5, 5, 0, 0, 5, 0 };

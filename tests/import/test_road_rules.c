@@ -6,21 +6,9 @@
 #include <unistd.h>
 
 static char folder[] = "/tmp/noc-road-rules-XXXXXX";
+#include "../folder.h"
+#include "../told.h"
 static noc_log *log_;
-static char told[2000];
-
-static void keep(void *user, noc_log_level level, const char *text) {
-    (void)user;
-    size_t n = strlen(told);
-    if (level <= NOC_LOG_WARN)
-        snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
-
-static const char *in_folder(const char *name) {
-    static char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    return path;
-}
 
 /* Six roads, one north of the other, from west to east: the second one is the pavement of the first. */
 static const struct {

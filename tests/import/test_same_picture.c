@@ -5,19 +5,11 @@
 
 enum { SIDE = 32 };
 
-/* 5 m wide along y and high, at x = 0; seen from +x, so that y goes to the right. */
+/* Seen from +x, so that y goes to the right. */
 static const char gml[] =
-    "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "
-    "xmlns:app='http://www.opengis.net/citygml/appearance/2.0' "
-    "xmlns:bldg='http://www.opengis.net/citygml/building/2.0'><cityObjectMember><bldg:Building gml:id='b'>"
-    "<bldg:boundedBy><bldg:WallSurface><bldg:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon "
-    "gml:id='p'><gml:exterior><gml:LinearRing gml:id='r'><gml:posList srsDimension='3'>0 0 0 0 5 0 0 5 5 0 0 5 0 0 0"
-    "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
-    "</bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy></bldg:Building></cityObjectMember>"
-    "<app:appearanceMember><app:Appearance><app:surfaceDataMember><app:ParameterizedTexture><app:imageURI>one.png"
-    "</app:imageURI><app:target uri='#p'><app:TexCoordList><app:textureCoordinates ring='#r'>0 0 1 0 1 1 0 1 0 0"
-    "</app:textureCoordinates></app:TexCoordList></app:target></app:ParameterizedTexture></app:surfaceDataMember>"
-    "</app:Appearance></app:appearanceMember></CityModel>";
+    GML_WALL("<app:ParameterizedTexture><app:imageURI>one.png</app:imageURI><app:target uri='#p'><app:TexCoordList>"
+             "<app:textureCoordinates ring='#r'>0 0 1 0 1 1 0 1 0 0</app:textureCoordinates></app:TexCoordList>"
+             "</app:target></app:ParameterizedTexture>");
 static const char city_json[] =
     "{\"type\":\"CityJSON\",\"version\":\"2.0\",\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},"
     "\"appearance\":{\"textures\":[{\"type\":\"PNG\",\"image\":\"one.png\"}],\"vertices-texture\":[[0,0],[1,0],[1,1],"

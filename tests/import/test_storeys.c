@@ -1,20 +1,11 @@
 /* Storeys that city models tell: their median height is asked whether heights are metres. */
-#include "../test.h"
+#include "../told.h"
 
 #include "base/base.h"
 #include <nocturne/nocturne.h>
 
 #include <stdio.h>
 #include <unistd.h>
-
-static char told[2000]; /* warnings */
-
-static void hear(void *user, noc_log_level level, const char *text) {
-    size_t n = strlen(told);
-    (void)user;
-    if (level == NOC_LOG_WARN)
-        snprintf(told + n, sizeof(told) - n, "%s\n", text);
-}
 
 /* Ten buildings, each a wall of so many metres with so many storeys. */
 static size_t write_citygml(char *at, size_t size, double height, const char *storeys) {
@@ -72,7 +63,7 @@ static void test_storeys(void **state) {
                          : write_cityjson(text, sizeof(text), height, rows[i / 2].storeys);
         int fd = mkstemp(path);
         assert_true(fd >= 0 && write(fd, text, n) == (ssize_t)n && !close(fd));
-        noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
+        noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
         noc_scene *s = noc_scene_create(log);
         const char *inputs[] = { path };
         noc_import_params params = noc_import_default_params();

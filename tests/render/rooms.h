@@ -48,6 +48,19 @@ static inline void point_light(noc_scene *s, double x, double y, double z, float
     assert_true(noc_scene_add_light(s, &l) >= 0);
 }
 
+/* The i-th of a crowd of lights of all kinds, before a wall at y = 6. */
+static inline noc_light crowd_light(int i, double y) {
+    return (noc_light){ .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .inner_deg = 30,
+                        .outer_deg = 60,
+                        .position = { -7 + 0.31 * i, y - 0.2 * (i % 5), 1 + i % 7 },
+                        .edge_u = { 0.4, 0, 0 },
+                        .edge_v = { 0, 0, 0.7 },
+                        .direction = { 0, -1, -0.5 },
+                        .radius = 0.1,
+                        .emission = { 20.f + (float)i, 25, 10 } };
+}
+
 /* Params for measurements: no sky, no jitter. */
 static inline noc_render_params measure(int width, int height, noc_method method) {
     noc_render_params p = noc_render_default_params();

@@ -55,17 +55,9 @@ static inline noc_scene *street(int lights) {
     QUAD(s, wall, -3, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
     QUAD(s, lamp, 0, 5.9, 1, 2, 0, 0, 0, 0, 1);
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
-                        .group = i % 3 ? group : 0,
-                        .inferred = i & 1,
-                        .inner_deg = 30,
-                        .outer_deg = 60,
-                        .position = { -7 + 0.31 * i, 5.7 - 0.2 * (i % 5), 1 + i % 7 },
-                        .edge_u = { 0.4, 0, 0 },
-                        .edge_v = { 0, 0, 0.7 },
-                        .direction = { 0, -1, -0.5 },
-                        .radius = 0.1,
-                        .emission = { 20.f + (float)i, 25, 10 } };
+        noc_light l = crowd_light(i, 5.7);
+        l.group = i % 3 ? group : 0;
+        l.inferred = i & 1;
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
