@@ -429,7 +429,8 @@ static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspe
     noc_camera c = noc_camera_default();
     city_bounds(&city);
     find_classes(&city);
-    find_hot(&city);
+    if (view != NOC_VIEWPOINT_OVERVIEW)
+        find_hot(&city);
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
     bool stand = view == NOC_VIEWPOINT_STREET || view == NOC_VIEWPOINT_OWN;
