@@ -422,6 +422,19 @@ static void number_panes(importer *im) {
     }
 }
 
+/* alone: of a built city, to which CRSs and boxes are words of its past. */
+static noc_status check_params(const noc_import_params *params, bool alone, noc_log *log) {
+    noc_status status = noc_option_check(noc_import_options(), params, "import", log);
+    if (!status && (params->threads < 0 || params->threads > MOST_THREADS))
+        status =
+            noc_error(log, NOC_ERR_ARGUMENT, "import: threads is %d, must be in 0..%d", params->threads, MOST_THREADS);
+    if (!status)
+        status = lamp_mapping_check(params, log);
+    if (!status)
+        status = windows_check(params, log);
+    return status || alone ? status : check_crs(params, log);
+}
+
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
                        const noc_import_params *params, bool inspect, noc_report **report) {
     const noc_import_params defaults = noc_import_default_params();
@@ -434,17 +447,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
             return noc_null(scene->log, "noc_scene_load");
     if (!params)
         params = &defaults;
-    noc_status status = noc_option_check(noc_import_options(), params, "import", scene->log);
-    if (!status && (params->threads < 0 || params->threads > MOST_THREADS))
-        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "import: threads is %d, must be in 0..%d", params->threads,
-                           MOST_THREADS);
-    if (!status)
-        status = lamp_mapping_check(params, scene->log);
-    if (!status)
-        status = windows_check(params, scene->log);
-    bool alone = path_count == 1 && noct_is(paths[0]); /* a built city, to which CRSs and boxes are words of its past */
-    if (!status && !alone)
-        status = check_crs(params, scene->log);
+    bool alone = path_count == 1 && noct_is(paths[0]);
+    noc_status status = check_params(params, alone, scene->log);
     if (status)
         return status;
     if (!path_count && !params->lamps.count && !params->tracks.count)
@@ -458,11 +462,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
                     .inspect = inspect,
                     .lock = PTHREAD_MUTEX_INITIALIZER };
     status = alone ? NOC_OK : box_read(params, scene->log, &im.box);
-    if (status) {
-        box_free(&im.box);
-        return status;
-    }
-    if (params->environment && !inspect)
+    if (!status && params->environment && !inspect)
         status = finish_environment(scene, params->environment);
     if (status) {
         box_free(&im.box);
