@@ -95,8 +95,9 @@ static void find_marks(own_body *b) {
                                              { "taillight", "taillamp", "rearlight", "rearlamp", NULL } };
     for (size_t m = 0; m < b->from->meshes.len; m++) {
         const noc_scene_mesh *mesh = &b->from->meshes.data[m];
-        for (int rear = 0; rear < 2; rear++)
-            for (size_t t = 0; t < mesh->triangle_count && is_called(mesh->name, words[rear]); t++) {
+        for (int rear = 0; rear < 2; rear++) {
+            size_t triangles = is_called(mesh->name, words[rear]) ? mesh->triangle_count : 0;
+            for (size_t t = 0; t < triangles; t++) {
                 double p[3][3];
                 for (size_t k = 0; k < 3; k++)
                     corner_of(b, 3 * (mesh->first_triangle + t) + k, p[k]);
@@ -104,6 +105,7 @@ static void find_marks(own_body *b) {
                 for (int k = 0; k < 3; k++)
                     grow(side, p[k]);
             }
+        }
     }
 }
 
