@@ -25,7 +25,8 @@ typedef struct bench {
     noc_render_params params;
     int model, car; /* car: its instance, -1: none */
     double transform[12];
-    float *with, *without; /* luminance, converged */
+    noc_smoother *smoother; /* NULL: frames are looked at as they are */
+    float *with, *without;  /* luminance, converged */
     unsigned char *mask;
     size_t pixels;
     int runs;
@@ -48,11 +49,13 @@ static bool stand_car(bench *b, bool there) {
 static bool frame(bench *b, const noc_render_params *p, float *out) {
     if (noc_view_render(b->view, &b->camera, p, NULL))
         return false;
-    noc_image *image = out ? noc_view_image(b->view) : NULL;
-    for (size_t i = 0; image && i < b->pixels; i++)
+    const noc_image *smoothed = b->smoother ? noc_smoother_step(b->smoother, b->view, NULL) : NULL;
+    noc_image *mine = out && !smoothed ? noc_view_image(b->view) : NULL;
+    const noc_image *image = smoothed ? smoothed : mine;
+    for (size_t i = 0; image && out && i < b->pixels; i++)
         out[i] = .2126f * image->rgb[3 * i] + .7152f * image->rgb[3 * i + 1] + .0722f * image->rgb[3 * i + 2];
     bool ok = !out || image;
-    noc_image_destroy(image);
+    noc_image_destroy(mine);
     return ok;
 }
 
@@ -183,12 +186,14 @@ int main(int argc, char **argv) {
         const char *name;
         noc_method method;
         noc_candidates candidates;
-        bool interactive;
-    } rows[] = { { "restir, uniform", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, false },
-                 { "restir, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false },
-                 { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false },
-                 { "preset interactive", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, true },
-                 { "default (ris, lists)", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false } };
+        bool interactive, smooth;
+    } rows[] = { { "restir, uniform", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, false, false },
+                 { "restir, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false, false },
+                 { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false, false },
+                 { "preset interactive", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, true, false },
+                 { "default (ris, lists)", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, false },
+                 { "interactive, smoothed", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, true, true },
+                 { "default, smoothed", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, true } };
     bench b = { .params = noc_render_default_params(), .car = -1 };
     b.params.width = argc > 3 ? atoi(argv[2]) : 240;
     b.params.height = argc > 3 ? atoi(argv[3]) : 135;
@@ -214,7 +219,11 @@ int main(int argc, char **argv) {
                 noc_render_use_preset(&b.params, NOC_PRESET_STILL);
             b.params.method = rows[i].method;
             b.params.candidates = rows[i].candidates;
+            b.params.aovs = rows[i].smooth ? NOC_SMOOTH_AOVS : 0;
+            b.smoother = rows[i].smooth ? noc_smoother_create(noc_view_device(b.view)) : NULL;
             ok = measure(&b, rows[i].name, appears);
+            noc_smoother_destroy(b.smoother);
+            b.smoother = NULL;
         }
     if (b.view)
         close_view(b.view);

@@ -15,7 +15,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 # What git tracks, and what is new and not ignored; without git, what lies in the folders of sources.
 sources() {
-    grep -E '\.(c|h|cc|py|sh|glsl|comp)$' | sort -u | while read -r file; do
+    grep -E '\.(c|h|cc|py|sh|glsl|comp|js|css|html)$' | sort -u | while read -r file; do
         [ ! -f "$file" ] || echo "$file"
     done
 }

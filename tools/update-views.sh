@@ -27,3 +27,17 @@ figure rays --method restir --frames 8 --show-range 0,24
 figure variance --frames 32 --show-range 0.0001,1000
 figure error --frames 32 --show-range 0.01,1
 figure group --frames 32
+figure influential --frames 32
+figure influential-share --frames 32
+figure luminance --frames 32
+figure illuminance --frames 32 --isolines 1,2,5,10,20
+
+# One picture of a turn, among cars that drive.
+for camera in street aerial; do
+    "$program" render builtin:city --size 320x180 --view $camera --show motion --animate --path orbit --frames 240 \
+        --preset interactive --samples 1 --traffic --no-mp4 -q -o "$work/%03d.png"
+    mv "$work/004.png" "$work/$camera.png"
+    rm "$work"/[0-9]*.png
+done
+montage "$work/street.png" "$work/aerial.png" -tile 2x1 -geometry +2+0 -background '#18181c' "$work/both.png"
+convert "$work/both.png" -strip -dither None -colors 128 "$root/docs/views/motion.png"

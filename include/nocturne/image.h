@@ -23,6 +23,9 @@ typedef struct noc_image {
     /* What the file says that noc_image_read read it from: */
     char channel[32]; /* the name of a view ("class", "depth"), whose numbers are no light; "" of a picture */
     double ev100;     /* exposure that a PNG was written with; NaN where it is not told */
+    /* it is for display alone (nocturne/smooth.h): files say so, under "smoothed", noc_image_read reads it from there,
+     * and no figures are made of it */
+    bool smoothed;
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
@@ -71,6 +74,23 @@ NOC_API noc_status noc_image_write(const noc_image *image, const char *path, con
                                    const noc_image_meta *meta, noc_log *log);
 NOC_API noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path,
                                          const noc_image_meta *meta, noc_log *log);
+/* Pictures as bytes in memory, for who sends many of them. An encoder keeps its memory from picture to picture, and is
+ * for one thread at a time. */
+typedef struct noc_image_encoder noc_image_encoder;
+typedef enum noc_image_codec {
+    NOC_IMAGE_JPEG, /* lossy: colours at half the resolution (4:2:0) */
+    NOC_IMAGE_PNG   /* lossless, packed in little time rather than into few bytes */
+} noc_image_codec;
+NOC_API bool noc_image_codec_built(noc_image_codec codec); /* is it in this build? PNG always is */
+/* NULL after reporting that there is no memory; the log must outlive it. */
+NOC_API noc_image_encoder *noc_image_encoder_create(noc_log *log);
+NOC_API void noc_image_encoder_destroy(noc_image_encoder *encoder); /* NULL is allowed */
+/* Encodes 8-bit sRGB, rows from the top. quality: 1..100, of JPEG. *data is the encoder's until its next call. After an
+ * error, which is reported, *data is NULL and *size 0: NOC_ERR_UNSUPPORTED where the build has no such codec (take PNG
+ * then), NOC_ERR_ARGUMENT, NOC_ERR_MEMORY. */
+NOC_API noc_status noc_image_encode_srgb8(noc_image_encoder *encoder, noc_image_codec codec, int quality,
+                                          const uint8_t *rgb, int width, int height, const uint8_t **data,
+                                          size_t *size);
 /* Writes text into such a picture: letters of 5 x 7 pixels times scale (1 or more), from the left end of their top row
  * at (x, y) on; g, p, q and y reach two more pixels below. What falls outside is not drawn. text is UTF-8: ASCII,
  * superscript two and the multiplication sign are drawn, other characters as boxes. Returns how many pixels wide it is;
@@ -146,15 +166,16 @@ typedef enum noc_channel_scale {
 
 typedef struct noc_channel {
     int width, height;
-    int components; /* 1, or 3: a unit vector a pixel */
+    int components; /* 1, or 3: a vector a pixel, of unit length where unit is "" */
     float *value;   /* width * height * components, owned; where there is none -1 (vectors: 0 0 0) */
     noc_channel_scale scale;
     /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
     const char *name, *unit;
-    const char *title; /* what the numbers are, for the legend: ASCII */
+    const char *title; /* what the numbers are, for the legend: Latin-1 */
     /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
     const char *const *labels;
     size_t label_count;
+    const uint32_t *label_numbers; /* the names are of these numbers, and others have none; not owned. NULL: of 0, 1 */
     const uint8_t (*label_colours)[3]; /* label_count of them, 8-bit sRGB; not owned. NULL: any that differ */
 } noc_channel;
 
@@ -162,16 +183,49 @@ typedef struct noc_channel {
 NOC_API noc_channel *noc_channel_create(int width, int height, int components, noc_log *log);
 NOC_API void noc_channel_destroy(noc_channel *channel);
 
+typedef enum noc_bar_scale { NOC_BAR_OF_CHANNEL, NOC_BAR_LINEAR, NOC_BAR_LOG } noc_bar_scale;
+/* The picture over its legend, or one of them alone. */
+typedef enum noc_channel_part { NOC_CHANNEL_WHOLE, NOC_CHANNEL_PICTURE, NOC_CHANNEL_LEGEND } noc_channel_part;
+
+#define NOC_ISOLINES 32 /* of a picture at most */
+
+/* How numbers are shown. All 0, and NULL, is as the channel says. */
 typedef struct noc_channel_params {
-    double low, high; /* values at the ends of the colour bar; equal: taken from the channel */
+    double low, high;    /* values at the ends of the colour bar; equal: taken from the channel */
+    noc_bar_scale scale; /* of the bar, in place of noc_channel.scale */
+    /* Lines where the numbers, smoothed over 5 x 5 pixels against noise (of wide pictures over more), pass these
+     * values, and do not jump: isoline_count of them, rising; a bar whose ends are found reaches to them. Or about so
+     * many at round values within the bar */
+    const double *isolines;
+    int isoline_count, round_isolines;
+    noc_channel_part part;
+    int legend_width; /* pixels that a legend alone has at least; 0: as under the picture */
 } noc_channel_params;
 
 /* In colours, with a legend below: a bar, or the names of those labels that are seen, where labels have names. Pixels
- * without a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its
- * size in *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half
- * percent. */
+ * without a value are grey, vectors are (v + 1) / 2 as red, green, blue. Isolines have their values written beside
+ * them, and below the bar. 8-bit sRGB, *out is malloc'ed (free it), its size in *width, *height. NULL params: the bar's
+ * ends are round numbers around all but the lowest and highest half percent. A picture of 1280 x 720 takes some
+ * milliseconds (bench/bench_channel). */
 NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out,
                                         int *width, int *height, noc_log *log);
+
+/* The bar that a picture of these params has, for a legend of one's own: its ends, round numbers within them, and the
+ * isolines. Ends that were found here can be said in `low` and `high` of the next pictures, which then keep them. */
+#define NOC_BAR_TICKS 16
+typedef struct noc_bar {
+    double low, high;
+    bool logarithmic;
+    int tick_count, isoline_count;
+    double ticks[NOC_BAR_TICKS], isolines[NOC_ISOLINES];
+} noc_bar;
+/* NOC_ERR_ARGUMENT after reporting: labels and vectors have none, or what the params say cannot be. */
+NOC_API noc_status noc_channel_bar(const noc_channel *channel, const noc_channel_params *params, noc_bar *bar,
+                                   noc_log *log);
+NOC_API void noc_bar_colour(double at, uint8_t rgb[3]); /* of every bar: at 0 its low end, at 1 its high one */
+/* The colour of a number that is a name: it depends on that alone, and on the names and colours that the channel has
+ * for it. A NULL channel has none: so colours of NOC_AOV_LIGHT and NOC_AOV_INFLUENTIAL are those of NULL. */
+NOC_API void noc_label_colour(const noc_channel *channel, uint32_t label, uint8_t rgb[3]);
 /* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y",
  * "Z"), the unit as "units". The metadata of both have the name as "channel", and the names of labels as "labels":
  * "1 wall #c08060, ..." (EXR: without the colour). */

@@ -285,9 +285,11 @@ typedef struct noc_report_lamp {
     const char *road;   /* what the nearest road is there: a value of OpenStreetMap's highway */
     const char *rules;  /* places of those of noc_import_params.luminaires that matched: "a.yaml:4; a.yaml:7" */
     const char *profile; /* name of a built-in one, or of the file that a rule or lamp_profile says */
-    double height;       /* m, of the light above its lamp's foot; NaN: there is no ground there */
-    double direction;    /* degrees clockwise from the scene's y axis, to where the lamp faces */
-    double watts;        /* NaN: neither its file nor a rule tells them */
+    /* its tags, attributes or columns as its file has them, "key=value" a line; whole ones, as many as fit into 2 kB */
+    const char *tags;
+    double height;    /* m, of the light above its lamp's foot; NaN: there is no ground there */
+    double direction; /* degrees clockwise from the scene's y axis, to where the lamp faces */
+    double watts;     /* NaN: neither its file nor a rule tells them */
     /* which of its properties are defaults, or the program's choice where it placed the lamp: 1 << NOC_LAMP_HEIGHT and
      * so on */
     unsigned assumed;
@@ -362,6 +364,7 @@ typedef struct noc_camera_params {
     const char *eye, *target; /* "X,Y,Z", both or none: local metres, or in crs */
     const char *crs; /* of eye and target: any that PROJ reads, or "scene" for the scene's; NULL: local metres */
     double fov;      /* vertical field of view, degrees; 0, the default: that of the view, with eye 50 */
+    const char *photo_points; /* file of a photograph's points, in place of eye: noc_scene_photo_camera; NULL: none */
 } noc_camera_params;
 
 #define NOC_CAMERA_DEFAULTS(set) set(viewpoint, NOC_VIEWPOINT_OWN)
@@ -377,6 +380,20 @@ NOC_DEFAULT_PARAMS(noc_camera_params, noc_camera_default_params, NOC_CAMERA_DEFA
  * so. */
 NOC_API noc_status noc_scene_place_camera(const noc_scene *scene, const noc_camera_params *params, double aspect,
                                           noc_camera *camera, bool *far_away);
+
+typedef struct noc_photo_info {
+    int width, height; /* of the photograph, pixels */
+    size_t points;
+    double residual; /* pixels of the photograph: noc_camera_align */
+} noc_photo_info;
+
+/* The camera of a photograph by noc_camera_align, from a table (CSV) of its points. Its first row is the photograph's
+ * width and height, each other one a pixel and the place that it shows: px,py,x,y,z, the place in crs, as in
+ * noc_camera_params, where NULL is the scene's CRS, or local metres where it has none. Empty rows, and those that begin
+ * with a letter or #, are passed over. info may be NULL. NOC_ERR_IO, NOC_ERR_FORMAT with the line, or what
+ * noc_camera_align returns, after reporting it. */
+NOC_API noc_status noc_scene_photo_camera(const noc_scene *scene, const char *path, const char *crs, noc_camera *camera,
+                                          noc_photo_info *info);
 
 #ifdef __cplusplus
 }

@@ -132,6 +132,9 @@ NOC_DEFAULT_PARAMS(noc_group_rule, noc_group_default_rule, NOC_GROUP_DEFAULTS)
  * staged. */
 NOC_API noc_status noc_scene_say_group(noc_scene *scene, int group, const char *text);
 
+/* Whether that would take the text, for any group: NOC_ERR_ARGUMENT after reporting. */
+NOC_API noc_status noc_group_state_check(const char *text, noc_log *log);
+
 /* Linear Rec.709 of luminance 1: a black body's or daylight's at that colour temperature, K. */
 NOC_API void noc_kelvin_rgb(double kelvin, float rgb[3]);
 

@@ -5,15 +5,19 @@
 #include <nocturne/built.h>
 #include <nocturne/image.h>
 #include <nocturne/import.h>
+#include <nocturne/influence.h>
 #include <nocturne/lab.h>
 #include <nocturne/log.h>
 #include <nocturne/luminaire.h>
+#include <nocturne/map.h>
+#include <nocturne/navigate.h>
 #include <nocturne/option.h>
 #include <nocturne/path.h>
 #include <nocturne/photometry.h>
 #include <nocturne/recipe.h>
 #include <nocturne/render.h>
 #include <nocturne/scene.h>
+#include <nocturne/smooth.h>
 #include <nocturne/text.h>
 
 #ifdef __cplusplus

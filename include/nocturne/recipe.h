@@ -98,6 +98,19 @@ NOC_API const noc_option *noc_recipe_option(const noc_recipe *recipe, size_t ind
 /* Sets the field of params, a struct that this row is of, to what the recipe says. Texts in it are the recipe's. */
 NOC_API noc_status noc_recipe_set(const noc_recipe *recipe, const noc_option *option, void *params, noc_log *log);
 
+/* An option and what is said of it: one text, of NOC_OPTION_TEXTS several. */
+typedef struct noc_recipe_value {
+    const noc_option *option;
+    const char *const *texts;
+    size_t count;
+} noc_recipe_value;
+
+/* A recipe as text, which noc_recipe_load reads back to the same: the parts of info but its path, and values of
+ * options. A profile that a rule finds in a folder of its own is named with that folder. What is no UTF-8 is
+ * NOC_ERR_FORMAT. *text is malloc'ed (free it), NULL after an error. */
+NOC_API noc_status noc_recipe_write(const noc_recipe_info *info, const noc_recipe_value *values, size_t count,
+                                    noc_log *log, char **text);
+
 #ifdef __cplusplus
 }
 #endif

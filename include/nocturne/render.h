@@ -9,7 +9,16 @@
 extern "C" {
 #endif
 
-typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
+typedef enum noc_method {
+    NOC_METHOD_REFERENCE,
+    NOC_METHOD_IS,
+    NOC_METHOD_RIS,
+    NOC_METHOD_RESTIR,
+    /* No light of the scene: what a lamp at the eye would show, to find one's way by. It asks for no light and no
+     * shadow ray, so nothing of the lights is built for it. Numbers of it are no photometry */
+    NOC_METHOD_HEADLIGHT,
+    NOC_METHOD_COUNT
+} noc_method;
 typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
 /* Where light candidates come from: docs/estimator.md, "Pickers". */
 typedef enum noc_candidates {
@@ -66,8 +75,31 @@ typedef enum noc_aov {
      * next */
     NOC_AOV_GROUP,  /* the group of lights: its index, as noc_scene_groups has them; 0: lights of no group */
     NOC_AOV_PLACED, /* how the light got its place: a noc_placed */
+    /* Where the surface that is seen was in the complete frame before, by that frame's camera and by where its instance
+     * stood then: three components. x, y: from its place in this picture to its place then, in pixels of this picture,
+     * to the right and down, exactly 0 where nothing moved; that place may lie outside the picture. z: how far it was
+     * from the eye then, along the view, m, above 0. 0 0 0 where it is not known: no surface, no frame before (the
+     * first one after a reset), behind that camera, or on an instance that was not there. A change of the picture's
+     * size alone is no motion: then both places are in pixels of the new size. Sub-pixel positions are no motion */
+    NOC_AOV_MOTION,
+    NOC_AOV_LUMINANCE, /* of the picture, cd/m2: sky and emitters, too */
+    /* of the surfaces that a pixel sees, lx: light that arrives straight from lights and the sky, whatever is reflected
+     * of it. The mean over the frames accumulated since it was asked for, of those that saw a surface. None for
+     * emitters, and for surfaces that reflect nothing of some light's colour (black ones): no ray is sent there */
+    NOC_AOV_ILLUMINANCE,
+    /* What brings the most luminance, and the second most, of the frames accumulated since one of these four was asked
+     * for: the first light of a noc_emitter (nocturne/influence.h), for noc_scene_get_light; exact below 2^24. Of an
+     * emitter that is seen it is its own. And the share of each of all the pixel's light from lights and the sky, 0..1.
+     * A pixel has room for NOC_AOV_EMITTERS of them: what brings more than one part in so many has a place, and a share
+     * is never too small, and at most that part too large, but for the estimator's noise */
+    NOC_AOV_INFLUENTIAL,
+    NOC_AOV_INFLUENTIAL_SHARE,
+    NOC_AOV_RUNNER_UP,
+    NOC_AOV_RUNNER_UP_SHARE, /* 0 where there is a first and no second */
     NOC_AOV_COUNT
 } noc_aov;
+
+#define NOC_AOV_EMITTERS 16
 
 typedef struct noc_render_params {
     int width, height; /* 1..NOC_IMAGE_MAX_SIDE */
@@ -206,7 +238,26 @@ NOC_API void noc_view_restart(noc_view *view);
 /* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
 NOC_API noc_image *noc_view_image(noc_view *view);
 
+/* What rays meet first in the scene as of the last commit, for who picks, measures or walks: hits[i] is that of
+ * rays[i]. Like all that is a call on a view it belongs to the view's thread, and may come before the first frame. It
+ * takes nothing of the view's picture, history or what was learned. Up to 256 rays are traced by the thread that calls,
+ * which waits for no frame of another view; more are shared out among the device's threads. Who asks beside a frame
+ * that is being rendered makes a view for it, which without a picture takes little. A commit waits for it as for a
+ * frame, so it must not be called from a frame's progress. The first one after an edit of geometry or instances has the
+ * ray tracing structure follow, as the next frame would. NOC_ERR_ARGUMENT after reporting a ray without direction or
+ * place: no hit is set. NOC_ERR_MEMORY: so, too. */
+NOC_API noc_status noc_view_cast(noc_view *view, const noc_ray *rays, size_t count, noc_hit *hits);
+
 NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
+/* What a view's numbers are, as noc_channel has it. NOC_CHANNEL_LABELS have neither bar nor range. */
+typedef struct noc_aov_info {
+    const char *name, *unit;
+    const char *title; /* Latin-1 */
+    noc_channel_scale scale;
+    int components;
+} noc_aov_info;
+/* All 0 and "" where there is no such view. */
+NOC_API noc_aov_info noc_aov_get_info(noc_aov aov);
 /* Copy of a view that the last complete frame kept. -1 where a pixel has none: no surface, an emitter seen directly, no
  * light chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
 NOC_API noc_channel *noc_view_aov(noc_view *view, noc_aov aov);
@@ -231,6 +282,7 @@ typedef enum noc_pass {
     NOC_PASS_SHADE_SHARED,
     NOC_PASS_SHADE,
     NOC_PASS_SHADE_ALL, /* reference */
+    NOC_PASS_HEADLIGHT,
     NOC_PASS_SKY,
     NOC_PASS_COUNT
 } noc_pass;

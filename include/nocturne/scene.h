@@ -285,8 +285,9 @@ NOC_API const char *noc_wall_verdict_name(noc_wall_verdict verdict); /* "with wi
 
 /* Windows on the walls of cities that are read. A wall, whatever pieces it comes in, gets a grid of cells of `cell` by
  * `storey_height`, centred on it and beginning at its foot, and a window in each cell that lies wholly in it. Which are
- * lit is decided by a number that a window has for good, from its building's id and its place there: so lit_windows and
- * hour switch windows and move none, and windows that are lit at one share are at a greater one. */
+ * lit is decided by a number that a window has for good, from its building's id and its place there: so lit_windows,
+ * hour and seed switch windows and move none, and windows that are lit at one share are at a greater one. What a window
+ * is like, when it is lit, is its own for good. */
 typedef struct noc_window_params {
     double lit_windows; /* share of windows that are lit at 21 h, 0..1 */
     double hour; /* 0..24: of the night or day; 21 takes lit_windows as it is, others scale it (noc_window_share) */
@@ -315,7 +316,8 @@ NOC_DEFAULT_PARAMS(noc_window_params, noc_window_default_params, NOC_WINDOW_DEFA
 /* Share of the windows of that kind that are lit where lit_windows of all are at 21 h: lit_windows times what the
  * kind's curve has at that hour over 21 h, at most 1. */
 NOC_API double noc_window_share(noc_window_kind kind, double lit_windows, double hour);
-/* Switches the windows that a load has made, by lit_windows and hour; the rest of params is not read. It costs what
+/* Switches the windows that a load has made, by lit_windows, hour and seed; the rest of params is not read. They are as
+ * a load with these would have made them. It costs what
  * switching their lights does: nothing is built anew. */
 NOC_API noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params);
 
@@ -324,6 +326,11 @@ NOC_API noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_para
  * any order. At the end of its track a car is at once at the track's beginning, or that of its next part: nothing lies
  * between. Costs what noc_scene_set_transform of every car does; without cars nothing happens. */
 NOC_API noc_status noc_scene_set_time(noc_scene *scene, double seconds);
+/* Takes all cars out of sight, with their light, or shows them again where their time has them; their lights are lit as
+ * they were made then. Those that are out of sight stay instances: they are a thousandth of their size, under the
+ * ground, and dark. Costs what noc_scene_set_time does. NOC_ERR_ARGUMENT before the first commit, where there are cars.
+ */
+NOC_API noc_status noc_scene_show_cars(noc_scene *scene, bool shown);
 
 /* Index in the scene of an instance's light: light is its number in the model, where those that noc_scene_add_light
  * returned come first and triangles of meshes that shine follow. -1 after reporting: there is none, or it is not
@@ -447,6 +454,51 @@ NOC_API bool noc_camera_project(const noc_camera *camera, int width, int height,
  * looks nowhere. */
 NOC_API noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2],
                                         double distance, double xyz[3]);
+
+/* A ray in the scene's local frame, to be cast by noc_view_cast. */
+typedef struct noc_ray {
+    double origin[3];    /* local metres, within 10 000 km */
+    double direction[3]; /* of any length but 0 */
+    double far;          /* m from the origin: what is further is not hit; INFINITY: nothing is too far */
+} noc_ray;
+
+/* The ray through pixel, as noc_camera_project has it, without end. NOC_ERR_ARGUMENT: the camera looks nowhere. */
+NOC_API noc_status noc_camera_ray(const noc_camera *camera, int width, int height, const double pixel[2], noc_ray *ray);
+
+/* What a ray meets first. Indices are those of the scene at the time of the cast. */
+typedef struct noc_hit {
+    bool hit;         /* false: nothing; all else is 0 then, and indices are -1 */
+    bool front;       /* it is met on the side from which its corners are seen counter-clockwise, as outside */
+    bool shines;      /* the surface itself sends light to where the ray comes from */
+    noc_class cls;    /* of the material */
+    double distance;  /* m from the ray's origin */
+    double place[3];  /* local metres */
+    double normal[3]; /* unit, of the triangle, on the side that the ray comes from */
+    int material;     /* for noc_scene_get_material */
+    int object;       /* for noc_scene_object_name, as NOC_AOV_OBJECT has it */
+    int instance;     /* for noc_scene_set_transform; -1: it stands in no instance */
+    int light;        /* whose shape or window the surface is, though it be out; -1: of none */
+} noc_hit;
+
+/* noc_view_cast, or what does the same, as who lies below the renderer asks for rays; user is the caller's. */
+typedef noc_status (*noc_cast_fn)(void *user, const noc_ray *rays, size_t count, noc_hit *hits);
+
+/* A place and where a photograph shows it. */
+typedef struct noc_camera_point {
+    double xyz[3];   /* local metres */
+    double pixel[2]; /* of the photograph, as in noc_camera_project; it may lie outside */
+} noc_camera_point;
+
+/* The camera that took a photograph of width x height pixels, from 4 to 10 000 places in it: the one of all eyes,
+ * directions and fields of view (2..150 degrees) that shows them nearest to their pixels, in the mean of squares; of
+ * several that do so equally, the one held most upright. Its principal point is the photograph's centre, and its pixels
+ * are square: neither a crop nor a fisheye. Places that do not lie on a plane, spread over the photograph, are best.
+ * start: a camera that is about right, or NULL: none is needed. residual_px (may be NULL): root of the mean squared
+ * distance between pixels and where the camera shows the places, pixels.
+ * NOC_ERR_ARGUMENT after reporting points from which none follows (too few, on a line), that no camera sees so (a tenth
+ * of the diagonal off), or that many do (a plane that is seen squarely); *camera is as it was. */
+NOC_API noc_status noc_camera_align(const noc_camera_point *points, size_t count, int width, int height,
+                                    const noc_camera *start, noc_camera *camera, double *residual_px, noc_log *log);
 
 typedef enum noc_viewpoint {
     NOC_VIEWPOINT_STREET,

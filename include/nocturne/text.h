@@ -20,6 +20,11 @@ NOC_API const char *noc_text_seconds(char text[32], double s);                  
  * may hold some, and none may reach a terminal. text may be from itself. */
 NOC_API const char *noc_text_clean(char *text, size_t size, const char *from);
 
+/* Bytes of the UTF-8 character that text begins with; 0: it begins with none. Of an empty text 1. */
+NOC_API size_t noc_text_utf8(const char *text);
+/* In double quotes, as YAML reads it where it is UTF-8. Like snprintf: the length that all of it takes. */
+NOC_API int noc_text_yaml(char *text, size_t size, const char *from);
+
 /* Which of the words was meant, by a mistake or two in its letters or by its beginning. NULL: none is near. */
 NOC_API const char *noc_text_nearest(const char *word, const char *const *words, size_t count);
 /* Exactly count finite decimal numbers with the separator between them, such as "1.5,-3,2e3", and nothing else. */

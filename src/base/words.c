@@ -19,6 +19,58 @@ const char *noc_text_clean(char *text, size_t size, const char *from) {
     return text;
 }
 
+size_t noc_text_utf8(const char *text) {
+    const unsigned char *s = (const unsigned char *)(text ? text : "");
+    if (s[0] < 0x80)
+        return 1;
+    size_t n = s[0] >= 0xf5 ? 0 : s[0] >= 0xf0 ? 4 : s[0] >= 0xe0 ? 3 : s[0] >= 0xc2 ? 2 : 0;
+    for (size_t i = 1; i < n; i++)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    /* overlong forms, surrogates, beyond U+10FFFF */
+    if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
+        (s[0] == 0xf4 && s[1] > 0x8f))
+        return 0;
+    return n;
+}
+
+/* What YAML takes for no printable character, or for the end of a line. */
+static bool must_be_escaped(unsigned code) {
+    return code < 32 || (code >= 127 && code < 160) || code == 0x2028 || code == 0x2029 || code == 0xfeff ||
+           code == 0xfffe || code == 0xffff;
+}
+
+int noc_text_yaml(char *text, size_t size, const char *from) {
+    size_t length = 0;
+    const char *s = from ? from : "";
+    char piece[16];
+#define PUT(...)                                                                                                       \
+    do {                                                                                                               \
+        int n_ = noc_snprintf(piece, sizeof(piece), __VA_ARGS__);                                                      \
+        for (int i_ = 0; i_ < n_; i_++, length++)                                                                      \
+            if (length + 1 < size)                                                                                     \
+                text[length] = piece[i_];                                                                              \
+    } while (0)
+    PUT("\"");
+    while (*s) {
+        const unsigned char *u = (const unsigned char *)s;
+        size_t n = noc_text_utf8(s);
+        unsigned code = n == 2   ? (u[0] & 31u) << 6 | (u[1] & 63u)
+                        : n == 3 ? (u[0] & 15u) << 12 | (u[1] & 63u) << 6 | (u[2] & 63u)
+                                 : u[0];
+        if (n && must_be_escaped(code))
+            PUT("\\u%04x", code);
+        else
+            PUT("%s%.*s", *s == '"' || *s == '\\' ? "\\" : "", n ? (int)n : 1, s);
+        s += n ? n : 1;
+    }
+    PUT("\"");
+#undef PUT
+    if (size)
+        text[NOC_MIN(length, size - 1)] = 0;
+    return (int)length;
+}
+
 const char *noc_text_count(char text[32], uint64_t n) {
     if (!text)
         return "";

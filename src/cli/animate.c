@@ -17,14 +17,15 @@
 
 #define GROUP "Animation"
 #define MOST_PICTURES 1000000
-#define PICTURES 240     /* where neither the path nor the user says */
-#define SEGMENT 48       /* pictures that reuse samples of each other */
-#define MOST_WARM_UP 32  /* frames */
-#define WARM_UP 8        /* of what is learned alone */
-#define METERED 8        /* places of the path that the exposure is measured at, */
-#define METERED_FRAMES 4 /* each by so many frames */
-#define METERED_SIDE 192 /* of so many pixels at most */
-#define KEY_SAMPLES 256  /* places of the path that its key is made of */
+#define PICTURES 240      /* where neither the path nor the user says */
+#define SEGMENT 48        /* pictures that reuse samples of each other */
+#define MOST_WARM_UP 32   /* frames */
+#define WARM_UP 8         /* of what is learned alone */
+#define SMOOTH_WARM_UP 24 /* of what is accumulated by --smooth */
+#define METERED 8         /* places of the path that the exposure is measured at, */
+#define METERED_FRAMES 4  /* each by so many frames */
+#define METERED_SIDE 192  /* of so many pixels at most */
+#define KEY_SAMPLES 256   /* places of the path that its key is made of */
 
 #define A animation_args
 static const noc_option animation_options[] = {
@@ -37,9 +38,9 @@ static const noc_option animation_options[] = {
       "time that the path takes; 0 = what its keys say, else what --frames take" },
     { "samples", GROUP, NOC_OPTION_INT, offsetof(A, samples), 1, 1e6, NULL, "", "frames averaged in each picture" },
     { "segment", GROUP, NOC_OPTION_INT, offsetof(A, segment), 0, MOST_PICTURES, NULL, "",
-      "pictures that learn from those before them; 1 = none does; 0 = 1, or 48 with reuse in time" },
+      "pictures that learn from those before them; 1 = none does; 0 = 1, or 48 with reuse or --smooth" },
     { "mp4", GROUP, NOC_OPTION_SWITCH, offsetof(A, film), 0, 2, NULL, "",
-      "a film of the pictures, too, by the program ffmpeg; auto: where it is found" },
+      "a film by ffmpeg, too; auto: where there is one" },
     { "overwrite", GROUP, NOC_OPTION_BOOL, offsetof(A, overwrite), 0, 1, NULL, "",
       "render pictures that are there, too, and replace files that are none of this animation" },
     { NULL },
@@ -416,6 +417,7 @@ static noc_status render_segment(animation *a, int first, int last) {
             noc_view_restart(a->job->view);
         }
         status = status ? status : render_frame(a, &p);
+        status = status ? status : cli_smooth(a->job);
         bool ends = !status && frame >= first * samples && frame == (picture + 1) * samples - 1;
         if (ends && !a->kept[picture])
             status = write_picture(a, picture);
@@ -454,8 +456,10 @@ static noc_status render_all(animation *a) {
 static void choose_segments(animation *a) {
     const noc_render_params *p = &a->job->args->render;
     bool reuse = p->method == NOC_METHOD_RESTIR && p->temporal;
-    a->segment = a->args->segment ? a->args->segment : reuse ? SEGMENT : 1;
-    a->warm_up = a->segment == 1 ? 0 : reuse ? (int)fmin(ceil(p->history), MOST_WARM_UP) : WARM_UP;
+    bool smooth = a->job->args->smooth;
+    a->segment = a->args->segment ? a->args->segment : reuse || smooth ? SEGMENT : 1;
+    int frames = smooth ? SMOOTH_WARM_UP : reuse ? (int)fmin(ceil(p->history), MOST_WARM_UP) : WARM_UP;
+    a->warm_up = a->segment == 1 ? 0 : frames;
 }
 
 static noc_status make_pictures(animation *a) {

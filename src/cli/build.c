@@ -45,101 +45,63 @@ const cli_command cli_build = {
 
 /* ---- the recipe in it ---- */
 
-static void print_option(FILE *out, const noc_option *o, const void *params) {
-    char *value = cli_option_value(o, params);
-    fprintf(out, "%s: ", o->name);
-    cli_yaml_text(out, value);
-    fputc('\n', out);
-    free(value);
-}
-
 static bool in_table(const noc_option *table, const noc_option *o) {
     while (table->name && table != o)
         table++;
     return table->name != NULL;
 }
 
+static void add_value(noc_recipe_value *values, size_t *count, const noc_option *o, const void *params) {
+    const char **text = cli_alloc(sizeof(*text));
+    *text = cli_option_value(o, params);
+    values[(*count)++] = (noc_recipe_value){ o, text, 1 };
+}
+
 /* What a build decides and pictures tell, as it was given; then what the recipe says of pictures. */
-static void print_options(FILE *out, const build_args *args) {
+static noc_recipe_value *list_values(const build_args *args, size_t *count) {
     union {
         noc_render_params render;
         noc_display_params display;
     } params;
     const noc_option *o;
+    size_t said = 0;
+    while (noc_recipe_option(args->common.recipe, said))
+        said++;
+    noc_recipe_value *values = cli_alloc((args->common.given_count + said + 1) * sizeof(*values));
     for (size_t i = 0; i < args->common.given_count; i++) {
         o = args->common.given[i];
         if (in_table(noc_import_options(), o) && o->kind != NOC_OPTION_TEXTS && strcmp(o->unit, "FILE") &&
             strcmp(o->group, "Reading"))
-            print_option(out, o, &args->import);
+            add_value(values, count, o, &args->import);
     }
-    for (size_t i = 0; (o = noc_recipe_option(args->common.recipe, i)); i++)
+    for (size_t i = 0; i < said; i++) {
+        o = noc_recipe_option(args->common.recipe, i);
         if (in_table(noc_render_options(), o) || in_table(noc_display_options(), o))
             if (!noc_recipe_set(args->common.recipe, o, &params, NULL))
-                print_option(out, o, &params);
-}
-
-/* "view: aerial" or "eye: ..., target: ...", each behind a comma but the first. */
-static void print_place(FILE *out, const noc_camera_params *camera, const char *before) {
-    for (const noc_option *o = noc_camera_options(); o->name; o++) {
-        char *value = cli_option_value(o, camera);
-        bool said = strcmp(o->name, "fov") ? *value != 0 : camera->fov > 0;
-        if (said && (strcmp(o->name, "view") || !camera->eye)) {
-            fprintf(out, "%s%s: ", before, strcmp(o->name, "camera-crs") ? o->name : "crs");
-            cli_yaml_text(out, value);
-            before = ", ";
-        }
-        free(value);
+                add_value(values, count, o, &params);
     }
+    return values;
 }
 
-static void print_camera(FILE *out, const noc_recipe_camera *camera) {
-    fputs("  ", out);
-    cli_yaml_text(out, camera->name);
-    fputs(": { ", out);
-    print_place(out, &camera->params, "");
-    fputs(" }\n", out);
-}
-
-static void print_path(FILE *out, const noc_recipe_path *path) {
-    fputs("  ", out);
-    cli_yaml_text(out, path->name);
-    fprintf(out, ":\n    loop: %s\n    keys:\n", path->loop ? "on" : "off");
-    for (size_t i = 0; i < path->key_count; i++) {
-        fputs("      - { ", out);
-        print_place(out, &path->keys[i].camera, "");
-        if (path->keys[i].seconds >= 0)
-            fprintf(out, ", seconds: %.17g", path->keys[i].seconds);
-        if (path->keys[i].hour >= 0)
-            fprintf(out, ", hour: %.17g", path->keys[i].hour);
-        fputs(" }\n", out);
-    }
-}
-
-/* free() it. */
-static char *make_recipe(const build_args *args) {
-    static const noc_option preset[] = { NOC_OPTION_PRESET(A, "") };
+/* Of its inputs, and what they are made of, nothing: that is built. free() it; NULL after reporting. */
+static char *make_recipe(const build_args *args, noc_log *log) {
     const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        cli_no_memory();
-    fputs("nocturne: 1\nname: ", out);
-    cli_yaml_text(out, *recipe->name ? recipe->name : "city");
-    fputc('\n', out);
-    if (recipe->has_preset)
-        print_option(out, preset, &(build_args){ .preset = (int)recipe->preset });
-    print_options(out, args);
-    if (recipe->camera_count)
-        fputs("cameras:\n", out);
-    for (size_t i = 0; i < recipe->camera_count; i++)
-        print_camera(out, &recipe->cameras[i]);
-    if (recipe->path_count)
-        fputs("paths:\n", out);
-    for (size_t i = 0; i < recipe->path_count; i++)
-        print_path(out, &recipe->paths[i]);
-    if (fclose(out) || !text)
-        cli_no_memory();
+    noc_recipe_info kept = { .name = recipe->name,
+                             .has_preset = recipe->has_preset,
+                             .preset = recipe->preset,
+                             .camera_count = recipe->camera_count,
+                             .cameras = recipe->cameras,
+                             .path_count = recipe->path_count,
+                             .paths = recipe->paths };
+    size_t count = 0;
+    noc_recipe_value *values = list_values(args, &count);
+    char *text;
+    noc_recipe_write(&kept, values, count, log, &text);
+    for (size_t i = 0; i < count; i++) {
+        free((char *)values[i].texts[0]);
+        free((void *)values[i].texts);
+    }
+    free(values);
     return text;
 }
 
@@ -181,8 +143,10 @@ static void print_summary(const build_args *args, const noc_scene *scene, const 
 }
 
 /* From here on an interrupt waits for the file to go, or to be whole. */
-static noc_status save(const build_args *args, const noc_scene *scene, const noc_report *report) {
-    char *recipe = make_recipe(args);
+static noc_status save(const build_args *args, const noc_scene *scene, const noc_report *report, noc_log *log) {
+    char *recipe = make_recipe(args, log);
+    if (!recipe)
+        return NOC_ERR_FORMAT;
     cli_nothing_to_keep(false);
     noc_status status =
         noc_scene_save(scene, args->output, &(noc_save_params){ report, recipe, { cli_load_progress, NULL } });
@@ -203,7 +167,7 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     cli_progress_clear();
     if (!status && cli_interrupted())
         status = NOC_ERR_CANCELLED;
-    status = status ? status : save(args, scene, report);
+    status = status ? status : save(args, scene, report, log);
     if (!status && !args->common.quiet)
         print_summary(args, scene, report, cli_now() - started);
     noc_report_destroy(report);

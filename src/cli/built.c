@@ -21,7 +21,9 @@ bool cli_has_map(const cli_args *args, const noc_import_params *import) {
 }
 
 /* What costs little to switch, and so may be another than it was built with. */
-static bool of_windows(const noc_option *o) { return !strcmp(o->name, "window-lit") || !strcmp(o->name, "hour"); }
+static bool of_windows(const noc_option *o) {
+    return !strcmp(o->name, "window-lit") || !strcmp(o->name, "hour") || !strcmp(o->name, "window-seed");
+}
 static bool of_groups(const noc_option *o) { return !strcmp(o->name, "group"); }
 static bool of_cars(const noc_option *o) { return !strcmp(o->name, "traffic-time"); }
 static bool of_rain(const noc_option *o, const noc_import_params *import) {

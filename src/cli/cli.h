@@ -15,6 +15,8 @@ enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
 typedef struct cli_args {
     const char **inputs; /* those that are no options; point into argv */
     size_t input_count;
+    const char **said; /* the same as they were said, before a recipe stood for its inputs; said_count of them */
+    size_t said_count;
     bool help, quiet, verbose;
     const noc_option *given[CLI_GIVEN]; /* options that were set, in order: by the words, then by the recipe */
     size_t given_count, given_by_words; /* those of the words are the first ones */
@@ -38,7 +40,8 @@ typedef struct cli_command {
     int (*run)(void *args); /* returns the exit status */
 } cli_command;
 
-extern const cli_command cli_render, cli_build, cli_info, cli_init, cli_compare, cli_experiment;
+extern const cli_command cli_render, cli_influence, cli_build, cli_info, cli_init, cli_compare,
+    cli_experiment;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 
@@ -146,6 +149,8 @@ noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_im
 char *cli_rules(const noc_report *report);
 /* "lamps 40 (312 klm), windows 8,000 (out)": groups that have lights; "none". free() it. */
 char *cli_groups(const noc_report *report);
+/* Colour temperature of what a light shines with, K; NaN where that is no black body's colour. */
+double cli_kelvin_of(const float emission[3]);
 void cli_print_lights(const char *rules, const char *groups, const noc_report *report); /* after these headings */
 
 /* render.c */

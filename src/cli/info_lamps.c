@@ -15,7 +15,7 @@ static const char *kind_of(const noc_light *light) {
 /* A lamp's line: of CSV, or a JSON object. */
 static const char *const columns[] = { "name",   "placed", "x",       "y",      "z",    "lumens", "shape",  "group",
                                        "kelvin", "watts",  "profile", "street", "road", "rule",   "height", "direction",
-                                       "tilt",   "file",   "assumed", "lon",    "lat",  "crs" };
+                                       "tilt",   "file",   "assumed", "lon",    "lat",  "crs",    "tags" };
 
 enum { COLUMNS = sizeof(columns) / sizeof(*columns) };
 
@@ -47,6 +47,19 @@ static void put_text(line *l, const char *text) {
     putchar('"');
 }
 
+/* A tag a line becomes "key=value; key=value". */
+static void put_tags(line *l, const char *tags) {
+    char text[4096];
+    size_t n = 0;
+    for (const char *p = tags ? tags : ""; *p && n + 3 < sizeof(text); p++) {
+        if (*p == '\n')
+            text[n++] = ';';
+        text[n++] = *p == '\n' ? ' ' : *p;
+    }
+    text[n] = 0;
+    put_text(l, text);
+}
+
 static void put_word(line *l, const char *word) {
     begin_value(l);
     printf(l->json ? "\"%s\"" : "%s", word);
@@ -61,25 +74,6 @@ static void put_number(line *l, double value, int decimals) {
         printf("%.6g", value);
     else
         printf("%.*f", decimals, value);
-}
-
-/* Colour temperature of what it shines with; NaN where that is no black body's colour. */
-static double kelvin_of(const float emission[3]) {
-    double low = 1000, high = 15000, luminance = .2126 * emission[0] + .7152 * emission[1] + .0722 * emission[2];
-    float rgb[3];
-    if (!(luminance > 0))
-        return NAN;
-    for (int i = 0; i < 50; i++) { /* less red, and more of the others, the hotter it is */
-        double middle = (low + high) / 2;
-        noc_kelvin_rgb(middle, rgb);
-        bool hotter = (emission[1] + emission[2]) * (double)rgb[0] > (rgb[1] + rgb[2]) * (double)emission[0];
-        *(hotter ? &low : &high) = middle;
-    }
-    noc_kelvin_rgb(low, rgb);
-    for (int k = 0; k < 3; k++)
-        if (fabs(emission[k] / luminance - rgb[k]) > 1e-3)
-            return NAN;
-    return low;
 }
 
 /* What the report does not tell, of built cities and scenes: what the scene does. */
@@ -111,7 +105,7 @@ static void put_lamp(line *l, const noc_light_info *light, const noc_report_lamp
     put_number(l, light->lumens, -1);
     put_word(l, kind_of(&light->light));
     put_text(l, group);
-    put_number(l, kelvin_of(light->light.emission), 0);
+    put_number(l, cli_kelvin_of(light->light.emission), 0);
     put_number(l, told->watts, -1);
     put_text(l, told->profile);
     put_text(l, told->street);
@@ -125,6 +119,7 @@ static void put_lamp(line *l, const noc_light_info *light, const noc_report_lamp
     put_number(l, at[3], 7);
     put_number(l, at[4], 7);
     put_text(l, crs);
+    put_tags(l, told->tags);
     fputs(l->json ? "}" : "\n", stdout);
 }
 

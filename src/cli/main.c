@@ -7,8 +7,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-const cli_command *const cli_commands[] = { &cli_render,  &cli_build,      &cli_info, &cli_init,
-                                            &cli_compare, &cli_experiment, NULL };
+const cli_command *const cli_commands[] = { &cli_render, &cli_influence,  &cli_build, &cli_info,
+                                            &cli_init,   &cli_compare, &cli_experiment, NULL };
 
 const cli_command *cli_find_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)
@@ -18,7 +18,7 @@ const cli_command *cli_find_command(const char *name) {
 }
 
 static int unknown_command(const char *name) {
-    const char *words[8];
+    const char *words[12];
     size_t count = 0;
     for (const cli_command *const *c = cli_commands; *c; c++)
         words[count++] = (*c)->name;
@@ -66,6 +66,7 @@ static int run(const cli_command *command, int argc, char **argv) {
     }
     noc_recipe_destroy(args->recipe);
     free(args->inputs);
+    free(args->said);
     free(args);
     return status;
 }

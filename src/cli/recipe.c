@@ -53,6 +53,9 @@ int cli_use_recipe(const cli_command *command, void *arguments) {
     cli_args *args = arguments;
     size_t index = args->input_count;
     args->given_by_words = args->given_count;
+    args->said = cli_alloc(sizeof(char *) * (args->input_count + 1));
+    memcpy(args->said, args->inputs, sizeof(char *) * args->input_count);
+    args->said_count = args->input_count;
     for (size_t i = 0; i < args->input_count && reads_cities(command); i++) {
         if (!noc_recipe_is(args->inputs[i]))
             continue;

@@ -10,16 +10,24 @@
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
-      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed", "",
-      "what is written: the picture, how lights were sampled, or what is seen" },
-    TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
+      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed|"
+      "motion|luminance|illuminance|"
+      "influential|influential-share|runner-up|runner-up-share",
+      "", "what is written: the picture, or a view of light, sampling or surfaces" },
+    TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of the view's colour bar; else found from its numbers"),
+    { "show-scale", "Output", NOC_OPTION_CHOICE, offsetof(A, range.scale), 0, 0, "auto|linear|log", "",
+      "steps of the colour bar; auto: what suits the view" },
+    TEXT("isolines", "Output", isolines, "LIST",
+         "contours of a view: at 1,2,5 (at one: 5,), or N of them at round values"),
     TEXT("influence-obj", "Output", influence_obj, "FILE",
-         "write the influence volumes of --candidates influence, and boxes, as OBJ too"),
+         "write the influence volumes of --candidates influence as OBJ too"),
     NOC_OPTION_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
       "frames that are rendered and averaged; pictures of an animation" },
+    { "smooth", "Output", NOC_OPTION_BOOL, offsetof(A, smooth), 0, 1, NULL, "",
+      "without noise, for the eye: for display alone" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
-      "render for about this long instead; 0 = no limit" },
+      "render for about so long instead; 0 = no limit" },
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
       "print times by pass, rays and the trace floor" },
     { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
@@ -29,21 +37,14 @@ static const noc_option *options(void) { return own_options; }
 
 static const noc_option picture_options[] = {
     TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
-    TEXT("exposure", "Display", exposure, "EV",
-         "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
     { NULL },
 };
 static const noc_option *of_picture(void) { return picture_options; }
 
-static const noc_option recipe_options[] = {
-    TEXT("camera", "Camera", camera_name, "NAME", "a camera of the recipe among the inputs; else its first one"),
-    { NULL },
-};
-static const noc_option *of_recipe(void) { return recipe_options; }
-
 static int run(void *arguments);
 
 static const render_args defaults = {
+    .command = &cli_render,
     .frames = 32,
     .camera = noc_camera_default_params(),
     .exposure = "auto",
@@ -71,9 +72,10 @@ const cli_command cli_render = {
     "once.\n",
     { { options, 0, NULL },
       { cli_animation_options, offsetof(A, animation), NULL },
-      { of_recipe, 0, NULL },
+      { cli_camera_options, 0, NULL },
       { noc_camera_options, offsetof(A, camera), NULL },
       { of_picture, 0, NULL },
+      { cli_exposure_options, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
       { noc_display_options, offsetof(A, display), by_exposure },
       { noc_import_options, offsetof(A, import), NULL },
@@ -109,29 +111,6 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
     return CLI_OK;
 }
 
-static int check_builtin(const render_args *args) {
-    for (size_t i = 0; i < args->common.given_count; i++) {
-        const noc_option *o = args->common.given[i];
-        const char *needed = noc_option_needs_input(o, args->common.inputs, args->common.input_count);
-        if (needed)
-            return cli_usage(&cli_render, "--%s is for the input %s", o->name, needed);
-    }
-    return CLI_OK;
-}
-
-/* What the preset sets, but for options that were given themselves. */
-static void use_preset(render_args *args) {
-    noc_render_params given = args->render, *p = &args->render;
-    const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
-    if (recipe->has_preset && !cli_given(&args->common, "preset"))
-        args->preset = (int)recipe->preset;
-    noc_render_use_preset(p, (noc_preset)args->preset);
-    for (const noc_option *o = noc_render_options(); o->name; o++)
-        for (size_t i = 0; i < args->common.given_count; i++)
-            if (args->common.given[i] == o)
-                memcpy((char *)p + o->offset, (const char *)&given + o->offset, noc_option_size(o));
-}
-
 /* What was given and changes nothing is no error, but hardly what was meant. */
 static void warn_of_idle(const render_args *args) {
     char why[160], value[8];
@@ -148,13 +127,6 @@ static void warn_of_idle(const render_args *args) {
             o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
         cli_error("warning: --%s%s has no effect: %s", off ? "no-" : "", o->name, why);
     }
-}
-
-static int check_map(const render_args *args) {
-    bool may = !args->render.environment_light || cli_has_map(&args->common, &args->import);
-    return may ? CLI_OK
-               : cli_usage(&cli_render, "--environment-light needs a map around the city that lights it: "
-                                        "--environment FILE");
 }
 
 static int check_influence(const render_args *args) {
@@ -176,41 +148,35 @@ static int check(render_job *job) {
     if (status)
         return status;
     cli_add_named(&args->common, &args->import);
-    cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)
         return cli_usage(&cli_render, "where to? -o night.png");
-    status = check_builtin(args);
-    use_preset(args);
+    status = cli_check_city(args);
     status = status ? status : parse_size(args);
-    status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
-    status = status ? status : cli_check_camera(args);
     status = status ? status : cli_parse_show(args);
+    if (!status && args->smooth && args->show)
+        status = cli_usage(&cli_render, "--smooth and --show exclude each other: views are not smoothed");
+    if (args->smooth)
+        args->render.aovs |= NOC_SMOOTH_AOVS;
     status = status ? status : cli_check_animation(args);
     if (!status && !args->animation.on)
         status = cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
     status = status ? status : check_influence(args);
-    status = status ? status : check_map(args);
     if (!status)
         warn_of_idle(args);
-    return status ? status : cli_check_built(&cli_render, &args->common, &args->import);
+    return status;
 }
 
 static noc_status load(render_job *job) {
     render_args *args = job->args;
     char triangles[64], lights[64];
-    args->import.progress = (noc_progress){ cli_load_progress, NULL };
-    args->import.builtin = &args->builtin;
-    noc_recipe_lists(args->common.recipe, &args->import);
-    args->import.threads = args->threads;
     /* what a frame would refuse, before a city is read */
     noc_status status = noc_render_check(&args->render, job->log);
     if (status)
         return status;
     cli_nothing_to_keep(true);
-    status = noc_scene_load(job->scene, args->common.inputs, args->common.input_count, &args->import, &job->report);
-    status = status ? status : cli_switch_built(&args->common, job->scene, &args->import, job->report);
+    status = cli_load_city(args, job->scene, &(noc_progress){ cli_load_progress, NULL }, &job->report);
     cli_nothing_to_keep(false);
     cli_progress_clear();
     noc_scene_get_info(job->scene, &job->scene_info);
@@ -258,6 +224,7 @@ static noc_status render_frames(render_job *job) {
         if (args->time > 0 && job->frames && spent + 0.5 * job->frame_seconds / job->frames > args->time)
             break;
         status = noc_view_render(job->view, &job->camera, &args->render, &progress);
+        status = status ? status : cli_smooth(job);
         if (!status)
             cli_add_stats(job);
     }
@@ -289,7 +256,14 @@ noc_status cli_start_view(render_job *job) {
     cli_nothing_to_keep(true); /* until a frame is complete */
     job->device = noc_device_create(&(noc_device_params){ .threads = job->args->threads }, job->log);
     job->view = noc_view_create(job->device, job->scene);
-    return job->view ? NOC_OK : NOC_ERR_MEMORY;
+    if (job->view && job->args->smooth)
+        job->smoother = noc_smoother_create(job->device);
+    return job->view && (job->smoother || !job->args->smooth) ? NOC_OK : NOC_ERR_MEMORY;
+}
+
+noc_status cli_smooth(render_job *job) {
+    job->smoothed = job->smoother ? noc_smoother_step(job->smoother, job->view, NULL) : NULL;
+    return job->smoothed || !job->smoother ? NOC_OK : NOC_ERR_MEMORY;
 }
 
 /* One picture of all frames. */
@@ -301,6 +275,8 @@ static int draw(render_job *job) {
                                         &job->camera, &job->far_away);
     if (!status && !cli_interrupted())
         status = cli_start_view(job);
+    if (!status)
+        cli_tell_photo(args, job->scene);
     if (!status && !cli_interrupted())
         status = render_frames(job);
     cli_nothing_to_keep(false);
@@ -359,6 +335,7 @@ static int run(void *arguments) {
     free(job.animation);
     noc_image_destroy(job.image);
     cli_drop_view(&job);
+    noc_smoother_destroy(job.smoother);
     noc_view_destroy(job.view);
     noc_device_destroy(job.device);
     noc_report_destroy(job.report);

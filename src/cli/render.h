@@ -13,16 +13,21 @@ typedef struct animation_args {
     int film; /* noc_switch */
 } animation_args;
 
+/* Of render; view begins with the same. */
 typedef struct render_args {
     cli_args common;
+    const cli_command *command; /* that they are arguments of */
     const char *output;
     int frames;
     double time; /* s; 0: no limit */
     int threads;
     bool stats;
+    bool smooth;
     int preset; /* noc_preset */
     int show;   /* 0: the picture, else 1 + noc_aov */
-    const char *show_range, *influence_obj;
+    const char *show_range, *isolines;
+    double lines[NOC_ISOLINES]; /* --isolines */
+    const char *influence_obj;
     noc_channel_params range;
     const char *camera_name;
     noc_camera_params camera;
@@ -41,9 +46,12 @@ typedef struct render_job {
     noc_scene *scene;
     noc_device *device;
     noc_view *view;
+    noc_smoother *smoother;    /* NULL: without --smooth */
+    const noc_image *smoothed; /* of the last frame; the smoother's */
     noc_image *image;
-    noc_channel *shown; /* --show */
-    char **labels;      /* that stand for its numbers where they are the scene's; label_count of them */
+    uint32_t *label_numbers; /* of labels; NULL: 0, 1, ... */
+    noc_channel *shown;      /* --show */
+    char **labels;           /* that stand for its numbers where they are the scene's; label_count of them */
     size_t label_count;
     const char *file; /* that the picture goes to */
     int averaged;     /* frames in it */
@@ -62,6 +70,7 @@ typedef struct render_job {
 
 /* render.c */
 noc_status cli_start_view(render_job *job);
+noc_status cli_smooth(render_job *job); /* the frame that is complete, with --smooth */
 void cli_add_stats(render_job *job);    /* of a frame that is complete */
 bool cli_is_failure(noc_status status); /* and no interruption */
 
@@ -91,9 +100,19 @@ bool cli_file_holds(const char *file, const char *text);
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment);
 
+/* city.c: what render and view share. */
+const noc_option *cli_camera_options(void); /* --camera, which names one of the recipe */
+const noc_option *cli_exposure_options(void);
+/* All that can be wrong with inputs, camera, preset and exposure, before any file is read; once the camera is chosen.
+ * CLI_OK or CLI_USAGE. */
+int cli_check_city(render_args *args);
+/* Loads all inputs, and switches those of a built city. report may be NULL. */
+noc_status cli_load_city(render_args *args, noc_scene *scene, const noc_progress *progress, noc_report **report);
+
 /* camera.c */
 int cli_choose_camera(render_args *args); /* of the recipe, where the words say no other */
 int cli_check_camera(const render_args *args);
+void cli_tell_photo(const render_args *args, const noc_scene *scene); /* how well its camera fits */
 
 /* show.c */
 int cli_parse_show(render_args *args);

@@ -36,7 +36,7 @@ static void add_options(meta_text *meta, const render_args *args) {
                                                           "stats",   "frames", "size",       "exposure",   "time",
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
                                                           "help",    "lamps",  "animate",    "overwrite",  "mp4",
-                                                          "path",    "tracks", NULL };
+                                                          "path",    "tracks", "show-scale", "isolines",   NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
@@ -235,7 +235,8 @@ noc_status cli_write_picture(render_job *job) {
         add(&meta, "show", cli_format("%s", noc_aov_name((noc_aov)(args->show - 1))));
     noc_image_meta texts = { meta.count, (const char *const *)meta.keys, (const char *const *)meta.values };
     noc_status status = args->show ? cli_write_view(job, &texts)
-                                   : noc_image_write(job->image, job->file, &args->display, &texts, job->log);
+                                   : noc_image_write(job->smoothed ? job->smoothed : job->image, job->file,
+                                                     &args->display, &texts, job->log);
     forget(&meta);
     return status;
 }

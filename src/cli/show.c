@@ -1,29 +1,160 @@
 /* nocturne render --show: a view of how lights were sampled, or of what is seen, in the picture's place. */
 #include "render.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The option's choices are "picture" and then the views in their order. */
 static noc_aov shown(const render_args *args) { return (noc_aov)(args->show - 1); }
 
+/* Neither names nor directions. */
+static bool has_bar(noc_aov aov) {
+    noc_aov_info info = noc_aov_get_info(aov);
+    return info.scale != NOC_CHANNEL_LABELS && info.components == 1;
+}
+
+/* LOW,HIGH of a bar that may begin at 0 where it is linear. */
+static int parse_range(render_args *args) {
+    double ends[2] = { 0, 0 };
+    if (!args->show_range)
+        return CLI_OK;
+    if (!noc_text_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1]))
+        return cli_usage(&cli_render, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first", args->show_range);
+    bool logarithmic = args->range.scale == NOC_BAR_OF_CHANNEL ? noc_aov_get_info(shown(args)).scale == NOC_CHANNEL_LOG
+                                                               : args->range.scale == NOC_BAR_LOG;
+    if (logarithmic && !(ends[0] > 0))
+        return cli_usage(&cli_render,
+                         "--show-range: the bar of --show %s is logarithmic, and begins above 0; "
+                         "--show-scale linear begins at 0",
+                         noc_aov_name(shown(args)));
+    args->range.low = ends[0];
+    args->range.high = ends[1];
+    return CLI_OK;
+}
+
+/* A number of lines, or their values: with a comma. */
+static int parse_isolines(render_args *args) {
+    char text[400];
+    if (!args->isolines)
+        return CLI_OK;
+    size_t length = strlen(args->isolines), count = 1;
+    bool list = strchr(args->isolines, ',') != NULL, good = length && length < sizeof(text);
+    snprintf(text, sizeof(text), "%s", args->isolines);
+    if (good && text[length - 1] == ',')
+        text[length - 1] = 0;
+    for (const char *at = text; *at; at++)
+        count += *at == ',';
+    good = good && count <= NOC_ISOLINES && noc_text_numbers(text, ',', count, args->lines);
+    for (size_t i = 0; good && i < count; i++)
+        good = isfinite(args->lines[i]) && args->lines[i] > (i ? args->lines[i - 1] : 0);
+    if (good && !list)
+        good = args->lines[0] == floor(args->lines[0]) && args->lines[0] <= NOC_ISOLINES;
+    if (!good)
+        return cli_usage(&cli_render,
+                         "--isolines: \"%.60s\" is neither rising values, 1,2,5, nor a number of lines, 1 to %d",
+                         args->isolines, NOC_ISOLINES);
+    if (list) {
+        args->range.isolines = args->lines;
+        args->range.isoline_count = (int)count;
+    } else {
+        args->range.round_isolines = (int)args->lines[0];
+    }
+    return CLI_OK;
+}
+
 int cli_parse_show(render_args *args) {
-    bool names = args->show && (shown(args) == NOC_AOV_LIGHT || shown(args) >= NOC_AOV_NORMAL); /* and directions */
-    if (args->show_range && (!args->show || names))
-        return cli_usage(&cli_render, "--show-range is for views that have a colour bar: --show lights, for one");
+    bool bar = args->show && has_bar(shown(args));
+    const char *of_bars = args->show_range    ? "show-range"
+                          : args->isolines    ? "isolines"
+                          : args->range.scale ? "show-scale"
+                                              : NULL;
+    if (of_bars && !bar)
+        return cli_usage(&cli_render, "--%s is for views that have a colour bar: --show illuminance, for one", of_bars);
     if (!args->show)
         return CLI_OK;
-    double ends[2] = { 0, 0 };
-    if (args->show_range && (!noc_text_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
-        return cli_usage(&cli_render, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first", args->show_range);
-    args->range = (noc_channel_params){ ends[0], ends[1] };
+    int status = parse_range(args);
+    status = status ? status : parse_isolines(args);
+    if (status)
+        return status;
     if ((shown(args) == NOC_AOV_VARIANCE || shown(args) == NOC_AOV_ERROR) && args->frames < 2 && !(args->time > 0))
         return cli_usage(&cli_render, "--show %s needs two frames or more", noc_aov_name(shown(args)));
     args->render.aovs = 1u << shown(args);
     noc_log *log = cli_log_create(&args->common);
-    noc_status status = noc_render_check(&args->render, log);
+    noc_status checked = noc_render_check(&args->render, log);
     noc_log_destroy(log);
-    return status ? CLI_USAGE : CLI_OK;
+    return checked ? CLI_USAGE : CLI_OK;
+}
+
+static int compare_values(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* A number of a view that is a name, and how many pixels have it. */
+typedef struct label {
+    size_t number, pixels;
+} label;
+
+static int compare_labels(const void *a, const void *b) {
+    const label *x = a, *y = b;
+    return x->pixels != y->pixels ? (x->pixels < y->pixels ? 1 : -1)
+                                  : (x->number > y->number) - (x->number < y->number);
+}
+
+/* Labels of a view's numbers, most frequent first; *count of them. v: n of the numbers, rising. */
+static label *count_labels(const float *v, size_t n, size_t *count) {
+    label *labels = cli_alloc((n + 1) * sizeof(*labels));
+    *count = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!i || v[i] != v[i - 1])
+            labels[(*count)++] = (label){ (size_t)v[i], 0 };
+        labels[*count - 1].pixels++;
+    }
+    qsort(labels, *count, sizeof(*labels), compare_labels);
+    return labels;
+}
+
+/* The numbers of a view that has one a pixel, rising. */
+static float *sorted_numbers(const noc_channel *view, size_t *n) {
+    size_t pixels = (size_t)view->width * (size_t)view->height;
+    float *v = cli_alloc((pixels + 1) * sizeof(*v));
+    *n = 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (view->value[i] >= 0)
+            v[(*n)++] = view->value[i];
+    qsort(v, *n, sizeof(*v), compare_values);
+    return v;
+}
+
+/* How a light is called: by its name where that is a lamp's id, else with its number, too. */
+static char *light_text(const render_job *job, size_t light) {
+    noc_light_info info;
+    char text[40] = "";
+    if (noc_scene_get_light(job->scene, light, &info) != NOC_OK || info.removed)
+        return cli_format("light %zu", light);
+    if (info.light.name)
+        noc_text_clean(text, sizeof(text), info.light.name);
+    if (info.lamp && strpbrk(text, "0123456789"))
+        return cli_format("%s", text);
+    return cli_format("%s %zu", *text ? text : info.lamp ? "lamp" : "light", light);
+}
+
+/* Names of the lights that are shown most, for the legend. */
+static void name_lights(render_job *job) {
+    enum { NAMED = 12 };
+    size_t n, count;
+    float *v = sorted_numbers(job->shown, &n);
+    label *labels = count_labels(v, n, &count);
+    job->label_count = count < NAMED ? count : NAMED;
+    job->labels = cli_alloc((job->label_count + 1) * sizeof(*job->labels));
+    job->label_numbers = cli_alloc((job->label_count + 1) * sizeof(*job->label_numbers));
+    for (size_t i = 0; i < job->label_count; i++) {
+        job->labels[i] = light_text(job, labels[i].number);
+        job->label_numbers[i] = (uint32_t)labels[i].number;
+    }
+    free(labels);
+    free(v);
 }
 
 /* Names of the scene's groups, for the legend. */
@@ -46,39 +177,31 @@ void cli_drop_view(render_job *job) {
     for (size_t i = 0; i < job->label_count; i++)
         free(job->labels[i]);
     free(job->labels);
+    free(job->label_numbers);
     job->labels = NULL;
+    job->label_numbers = NULL;
     job->label_count = 0;
 }
 
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta) {
     cli_drop_view(job); /* of an animation's picture before */
     job->shown = noc_view_aov(job->view, shown(job->args));
-    if (job->shown && shown(job->args) == NOC_AOV_GROUP) {
-        name_groups(job);
+    noc_aov aov = shown(job->args);
+    bool lights = aov == NOC_AOV_INFLUENTIAL || aov == NOC_AOV_RUNNER_UP || aov == NOC_AOV_LIGHT;
+    if (job->shown && (lights || aov == NOC_AOV_GROUP)) {
+        (lights ? name_lights : name_groups)(job);
+        job->shown->label_numbers = job->label_numbers;
         job->shown->labels = (const char *const *)job->labels;
         job->shown->label_count = job->label_count;
     }
     return job->shown ? noc_channel_write(job->shown, job->file, &job->args->range, meta, job->log) : NOC_ERR_MEMORY;
 }
 
-static int compare_values(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-/* A number of a view that is a name, and how many pixels have it. */
-typedef struct label {
-    size_t number, pixels;
-} label;
-
-static int compare_labels(const void *a, const void *b) {
-    const label *x = a, *y = b;
-    return x->pixels != y->pixels ? (x->pixels < y->pixels ? 1 : -1)
-                                  : (x->number > y->number) - (x->number < y->number);
-}
-
 static const char *name_of(const render_job *job, size_t number) {
-    if (number < job->shown->label_count)
+    for (size_t i = 0; job->label_numbers && i < job->label_count; i++)
+        if (job->label_numbers[i] == number)
+            return job->labels[i];
+    if (!job->label_numbers && number < job->shown->label_count)
         return job->shown->labels[number];
     return shown(job->args) == NOC_AOV_OBJECT ? noc_scene_object_name(job->scene, number) : NULL;
 }
@@ -86,14 +209,8 @@ static const char *name_of(const render_job *job, size_t number) {
 /* What the largest of them are, by name, and their shares of all pixels. v: n of the numbers, rising. */
 static void print_names(const render_job *job, const float *v, size_t n, size_t pixels) {
     enum { SHOWN = 20 };
-    label *labels = cli_alloc((n + 1) * sizeof(*labels));
-    size_t count = 0, told = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (!i || v[i] != v[i - 1])
-            labels[count++] = (label){ (size_t)v[i], 0 };
-        labels[count - 1].pixels++;
-    }
-    qsort(labels, count, sizeof(*labels), compare_labels);
+    size_t count, told = 0;
+    label *labels = count_labels(v, n, &count);
     for (size_t i = 0; i < count && told < SHOWN; i++) {
         const char *name = name_of(job, labels[i].number);
         char text[48];
@@ -134,11 +251,7 @@ void cli_print_view(const render_job *job) {
         printf("  view      %s\n", view->title);
         return;
     }
-    float *v = cli_alloc(pixels * sizeof(*v));
-    for (size_t i = 0; i < pixels; i++)
-        if (view->value[i] >= 0)
-            v[n++] = view->value[i];
-    qsort(v, n, sizeof(*v), compare_values);
+    float *v = sorted_numbers(view, &n);
     for (size_t i = 0; i < n; i++)
         different += !i || v[i] != v[i - 1];
     char text[32];

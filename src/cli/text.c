@@ -116,32 +116,17 @@ char *cli_format(const char *fmt, ...) {
     return text;
 }
 
-/* Length of the well-formed UTF-8 sequence at s, 0 if it is none. */
-static int utf8_length(const unsigned char *s) {
-    if (s[0] < 0x80)
-        return 1;
-    int n = s[0] >= 0xf5 ? 0 : s[0] >= 0xf0 ? 4 : s[0] >= 0xe0 ? 3 : s[0] >= 0xc2 ? 2 : 0;
-    for (int i = 1; i < n; i++)
-        if ((s[i] & 0xc0) != 0x80)
-            return 0;
-    /* overlong forms, surrogates, beyond U+10FFFF */
-    if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
-        (s[0] == 0xf4 && s[1] > 0x8f))
-        return 0;
-    return n;
-}
-
 void cli_json_text(FILE *out, const char *text) {
     fputc('"', out);
     for (const unsigned char *s = (const unsigned char *)(text ? text : ""); *s;) {
-        int n = utf8_length(s);
+        size_t n = noc_text_utf8((const char *)s);
         if (!n) {
             fputs("\\ufffd", out);
             s++;
         } else if (*s < 32 || *s == '"' || *s == '\\' || *s == 127) {
             fprintf(out, "\\u%04x", *s++);
         } else {
-            fwrite(s, 1, (size_t)n, out);
+            fwrite(s, 1, n, out);
             s += n;
         }
     }
@@ -150,32 +135,18 @@ void cli_json_text(FILE *out, const char *text) {
 
 const char *cli_not_utf8(const char *text) {
     const unsigned char *s = (const unsigned char *)text;
-    for (int n; *s; s += n)
-        if (!(n = utf8_length(s)))
+    for (size_t n; *s; s += n)
+        if (!(n = noc_text_utf8((const char *)s)))
             return (const char *)s;
     return NULL;
 }
 
-/* What YAML allows in no text, or takes for the end of a line, where it stands for itself. */
-static bool must_be_escaped(unsigned code) {
-    return code < 32 || (code >= 127 && code < 160) || code == 0x2028 || code == 0x2029 || code == 0xfeff ||
-           code == 0xfffe || code == 0xffff;
-}
-
 void cli_yaml_text(FILE *out, const char *text) {
-    fputc('"', out);
-    for (const unsigned char *s = (const unsigned char *)text; *s;) {
-        int n = utf8_length(s);
-        unsigned code = n == 2   ? (s[0] & 31u) << 6 | (s[1] & 63u)
-                        : n == 3 ? (s[0] & 15u) << 12 | (s[1] & 63u) << 6 | (s[2] & 63u)
-                                 : *s;
-        if (n && must_be_escaped(code))
-            fprintf(out, "\\u%04x", code);
-        else
-            fprintf(out, "%s%.*s", *s == '"' || *s == '\\' ? "\\" : "", n ? n : 1, (const char *)s);
-        s += n ? n : 1;
-    }
-    fputc('"', out);
+    size_t size = (size_t)noc_text_yaml(NULL, 0, text) + 1;
+    char *quoted = cli_alloc(size);
+    noc_text_yaml(quoted, size, text);
+    fputs(quoted, out);
+    free(quoted);
 }
 
 void cli_json_number(FILE *out, double v) {

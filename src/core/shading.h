@@ -34,6 +34,13 @@ FN v3 sample_shade(CTX surf s, reservoir r, light l) {
     return mul3(reflected(s, shining_sample(PASS l, s.p, r.u, r.v)), r.w);
 }
 
+/* What it lights the surface with, lx: without what that reflects. */
+FN real sample_lux(CTX surf s, reservoir r, light l) {
+    light_sample of = shining_sample(PASS l, s.p, r.u, r.v);
+    EXACT real lux = luminance(of.le) * max_(dot3(s.n, of.wi), K(0.0f)) * r.w;
+    return lux;
+}
+
 /* How many rays go to the sky: SKY_RAYS where this frame's lights brought less than the sky may, c: there its noise is
  * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
  * bias. */
@@ -65,29 +72,52 @@ FN segment sky_ray(CTX surf s, u32 key, u32 number, real least) {
     return r;
 }
 
-/* What such a ray brings where it is free, of `share` of the pixel's rays. */
-FN v3 sky_shade(CTX surf s, v3 way, real share) {
+/* What comes along such a ray where it is free, and what it counts, of `share` of the pixel's rays. */
+struct sky_arrival {
+    v3 d;
+    v3 radiance;
+    real w; /* share / density */
+};
+
+#ifndef CORE_GLSL
+typedef struct sky_arrival sky_arrival;
+#endif
+
+FN sky_arrival sky_arrives(CTX surf s, v3 way, real share) {
     EXACT real dx = way.x * K(SKY_REACH_BACK);
     EXACT real dy = way.y * K(SKY_REACH_BACK);
     EXACT real dz = way.z * K(SKY_REACH_BACK);
-    v3 d = V3(dx, dy, dz);
+    sky_arrival a;
+    a.d = V3(dx, dy, dz);
     real p;
-    v3 sky;
     if ((FRAME.flags & FRAME_MAP_LIGHTS) != 0u) {
-        v3 radiance = environment_radiance(PASS d);
-        p = environment_ray_density(PASS s, d, radiance);
-        sky = mul3(radiance, K(FRAME.environment_scale));
+        v3 radiance = environment_radiance(PASS a.d);
+        p = environment_ray_density(PASS s, a.d, radiance);
+        a.radiance = mul3(radiance, K(FRAME.environment_scale));
     } else {
-        p = sky_density(s, d);
-        sky = sky_radiance(d, K(FRAME.sky));
+        p = sky_density(s, a.d);
+        a.radiance = sky_radiance(a.d, K(FRAME.sky));
     }
     mask some = p > K(0.0f);
-    v3 f = reflect(s, d);
     EXACT real w = sel(some, share / sel(some, p, K(1.0f)), K(0.0f));
-    EXACT real x = f.x * sky.x * w;
-    EXACT real y = f.y * sky.y * w;
-    EXACT real z = f.z * sky.z * w;
+    a.w = w;
+    return a;
+}
+
+/* What of it is reflected, and what it lights the surface with, lx. */
+FN v3 sky_shade(CTX surf s, v3 way, real share) {
+    sky_arrival a = sky_arrives(PASS s, way, share);
+    v3 f = reflect(s, a.d);
+    EXACT real x = f.x * a.radiance.x * a.w;
+    EXACT real y = f.y * a.radiance.y * a.w;
+    EXACT real z = f.z * a.radiance.z * a.w;
     return V3(x, y, z);
+}
+
+FN real sky_lux(CTX surf s, v3 way, real share) {
+    sky_arrival a = sky_arrives(PASS s, way, share);
+    EXACT real lux = luminance(a.radiance) * max_(dot3(s.n, a.d), K(0.0f)) * a.w;
+    return lux;
 }
 
 /* The sky behind pixel (x, y). */

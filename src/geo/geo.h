@@ -110,6 +110,8 @@ typedef struct geo_fitting {
 #define GEO_NO_PROFILE (-1)
 #define geo_no_fitting() ((geo_fitting){ .efficacy = NAN, .radius = NAN, .tilt = NAN, .arm = NAN })
 
+enum { GEO_LAMP_TAGS = 2048 }; /* bytes of geo_lamp.tags at most, with the 0 */
+
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
     double xyz[3];    /* file CRS; xyz[2] NaN: stands on the ground */
@@ -137,6 +139,7 @@ typedef struct geo_lamp {
     bool tells_street;
     const geo_fitting *fitting; /* NULL: no rule says anything; never of a reader's */
     const char *id, *ref;       /* what else it is called, for other files may call it so; ref may be NULL */
+    const char *tags;           /* as the file has them, "key=value" a line; NULL where nobody asks (each_lamp) */
     /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads
      * 0: none. */
     int body_heads;

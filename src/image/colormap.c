@@ -3,6 +3,7 @@
 #include "image/internal.h"
 
 #include <math.h>
+#include <pthread.h>
 
 typedef struct lab {
     double l, a, b;
@@ -69,6 +70,15 @@ void colormap_init(colormap *map, colormap_kind kind) {
         for (int k = 0; k < 3; k++)
             map->rgb[i][k] = srgb8_encode(&table, (float)rgb[k]);
     }
+}
+
+static colormap sequential_map;
+static void make_sequential(void) { colormap_init(&sequential_map, COLORMAP_SEQUENTIAL); }
+
+const colormap *colormap_sequential(void) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_sequential);
+    return &sequential_map;
 }
 
 void colormap_polar(double lightness, double chroma, double hue, uint8_t out[3]) {
@@ -138,12 +148,47 @@ size_t colorbar_ticks(const colorbar *bar, double *ticks, size_t max) {
                             : linear_ticks(bar->low, bar->high, ticks, max);
 }
 
-static double position(const colorbar *bar, double v) {
+double colorbar_position(const colorbar *bar, double v) {
     return bar->logarithmic ? log(v / bar->low) / log(bar->high / bar->low) : (v - bar->low) / (bar->high - bar->low);
 }
 
+const uint8_t *colormap_ink(const uint8_t on[3]) {
+    static const uint8_t light[3] = { 236, 246, 255 }, dark[3] = { 10, 14, 34 };
+    return 3 * on[0] + 6 * on[1] + on[2] > 10 * 150 ? dark : light;
+}
+
+static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 };
+
+/* Numbers under a bar whose upper left corner that is; those that would touch the one before are left out. */
+static void draw_numbers(canvas *c, int left, int y, int length, int scale, const colorbar *bar) {
+    double round[TICKS];
+    size_t n = bar->line_count;
+    const double *ticks = bar->lines;
+    if (!n) {
+        n = colorbar_ticks(bar, round, (size_t)NOC_CLAMP(length / (40 * scale), 2, TICKS));
+        ticks = round;
+    }
+    int free = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!(ticks[i] >= bar->low * (1 - 1e-9) && ticks[i] <= bar->high * (1 + 1e-9)))
+            continue;
+        char text[32];
+        noc_snprintf(text, sizeof(text), "%.6g", ticks[i]);
+        double share = colorbar_position(bar, ticks[i]);
+        int at = left + (int)(share * (length - 1) + 0.5);
+        int from = at + scale / 2 - text_width(text, scale) / 2;
+        canvas_fill(c, at - scale / 2, y, scale, TICK * scale, ink);
+        if (bar->line_count)
+            canvas_fill(c, at - scale / 2, y - BAR * scale, scale, BAR * scale,
+                        colormap_ink(colormap_at(bar->map, share)));
+        if (from < free)
+            continue;
+        text_draw(c, from, y + (TICK + GAP) * scale, text, scale, ink);
+        free = from + text_width(text, scale) + 4 * scale;
+    }
+}
+
 void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar *bar) {
-    static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 };
     canvas_fill(c, x, y, width, colorbar_height(scale), ground);
     /* room for half a number at either end */
     int side = 24 * scale, left = x + side, length = NOC_MAX(width - 2 * side, 1);
@@ -152,14 +197,5 @@ void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar
     y += (TEXT_HEIGHT + GAP) * scale;
     for (int i = 0; i < length; i++)
         canvas_fill(c, left + i, y, 1, BAR * scale, colormap_at(bar->map, (i + 0.5) / length));
-    y += BAR * scale;
-    double ticks[TICKS];
-    size_t n = colorbar_ticks(bar, ticks, (size_t)NOC_CLAMP(length / (40 * scale), 2, TICKS));
-    for (size_t i = 0; i < n; i++) {
-        char text[32];
-        noc_snprintf(text, sizeof(text), "%.6g", ticks[i]);
-        int at = left + (int)(position(bar, ticks[i]) * (length - 1) + 0.5);
-        canvas_fill(c, at - scale / 2, y, scale, TICK * scale, ink);
-        text_draw(c, at + scale / 2 - text_width(text, scale) / 2, y + (TICK + GAP) * scale, text, scale, ink);
-    }
+    draw_numbers(c, left, y + BAR * scale, length, scale, bar);
 }

@@ -17,6 +17,7 @@ typedef struct colormap {
 } colormap;
 
 void colormap_init(colormap *map, colormap_kind kind);
+const colormap *colormap_sequential(void);                 /* made once */
 const uint8_t *colormap_at(const colormap *map, double t); /* t is clamped to 0..1; NaN gives the entry of 0 */
 
 /* One colour of Oklab by lightness 0..1, chroma, and hue in radians, as near as sRGB has it. */
@@ -40,8 +41,13 @@ typedef struct colorbar {
     const colormap *map;
     double low, high; /* values at the ends; low < high, and 0 < low where logarithmic */
     bool logarithmic;
-    const char *title; /* with the unit: "luminance [cd/m\xb2]" */
+    const char *title;   /* with the unit: "luminance [cd/m\xb2]" */
+    const double *lines; /* marked in the bar, with numbers in place of round ones; NULL: none */
+    size_t line_count;
 } colorbar;
+double colorbar_position(const colorbar *bar, double v); /* 0 at its low end, 1 at its high one */
+/* The ink that is read on that colour. */
+const uint8_t *colormap_ink(const uint8_t on[3]);
 int colorbar_height(int scale);    /* pixels it takes */
 int colorbar_min_width(int scale); /* under this numbers may touch */
 /* Fills width x colorbar_height(scale) pixels from (x, y): background, bar, ticks, text. */

@@ -24,6 +24,10 @@ noc_status image_check_pair(const noc_image *x, const noc_image *r, noc_log *log
                          x->height, r->width, r->height);
     for (int k = 0; k < 2; k++) {
         const noc_image *image = k ? r : x;
+        if (image->smoothed)
+            return noc_error(log, NOC_ERR_ARGUMENT,
+                             "compare: the %s is smoothed: it is for display, and for no figures",
+                             k ? "reference" : "picture");
         size_t n = image_pixels(image), bad = 0, first = 0;
         for (size_t i = n; i-- > 0;)
             if (!image_finite(image->rgb + 3 * i)) {

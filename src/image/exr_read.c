@@ -366,8 +366,10 @@ static void read_channel_name(exr_reader *r) {
 }
 
 static void finish_image(exr_reader *r) {
+    const exr_attribute_t *smoothed = NULL;
     size_t n = image_pixels(r->image);
     read_channel_name(r);
+    r->image->smoothed = exr_get_attribute_by_name(r->context, r->part, "smoothed", &smoothed) == EXR_ERR_SUCCESS;
     for (size_t i = 0; r->grey && i < n; i++)
         r->image->rgb[3 * i + 1] = r->image->rgb[3 * i + 2] = r->image->rgb[3 * i];
     for (size_t i = 0; r->mask && i < n; i++)

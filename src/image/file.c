@@ -83,6 +83,8 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
     } else {
         meta_add(&list, "units", "cd/m2");
     }
+    if (image->smoothed)
+        meta_add(&list, "smoothed", "for display");
     noc_status status = meta_add_all(&list, meta, path, log);
     if (status == NOC_OK) {
         warn_non_finite(image, path, log);

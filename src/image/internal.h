@@ -73,6 +73,9 @@ void meta_free(meta_list *list);
 
 /* png.c, exr_read.c, exr_write.c and hdr.c. Readers take the whole file; name is for messages. */
 noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log);
+/* The same in memory, in little time; what `to` held goes. */
+typedef NOC_ARRAY(uint8_t) byte_buffer;
+noc_status image_encode_png(byte_buffer *to, const uint8_t *rgb, int width, int height, noc_log *log);
 noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log);
 noc_status image_write_exr_channel(output *o, const noc_channel *channel, const meta_list *meta, noc_log *log);
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log);

@@ -4,14 +4,32 @@
 #include <stdio.h>
 
 static const char *const names[NOC_AOV_COUNT] = {
-    [NOC_AOV_LIGHTS] = "lights",     [NOC_AOV_DENSITY] = "density",       [NOC_AOV_LIGHT] = "light",
-    [NOC_AOV_WEIGHT] = "weight",     [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
-    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",           [NOC_AOV_DEPTH] = "depth",
-    [NOC_AOV_NORMAL] = "normal",     [NOC_AOV_CLASS] = "class",           [NOC_AOV_OBJECT] = "object",
-    [NOC_AOV_GROUP] = "group",       [NOC_AOV_PLACED] = "placed",
+    [NOC_AOV_LIGHTS] = "lights",
+    [NOC_AOV_DENSITY] = "density",
+    [NOC_AOV_LIGHT] = "light",
+    [NOC_AOV_WEIGHT] = "weight",
+    [NOC_AOV_CONFIDENCE] = "confidence",
+    [NOC_AOV_RAYS] = "rays",
+    [NOC_AOV_VARIANCE] = "variance",
+    [NOC_AOV_ERROR] = "error",
+    [NOC_AOV_DEPTH] = "depth",
+    [NOC_AOV_NORMAL] = "normal",
+    [NOC_AOV_CLASS] = "class",
+    [NOC_AOV_OBJECT] = "object",
+    [NOC_AOV_GROUP] = "group",
+    [NOC_AOV_PLACED] = "placed",
+    [NOC_AOV_MOTION] = "motion",
+    [NOC_AOV_LUMINANCE] = "luminance",
+    [NOC_AOV_ILLUMINANCE] = "illuminance",
+    [NOC_AOV_INFLUENTIAL] = "influential",
+    [NOC_AOV_INFLUENTIAL_SHARE] = "influential-share",
+    [NOC_AOV_RUNNER_UP] = "runner-up",
+    [NOC_AOV_RUNNER_UP_SHARE] = "runner-up-share",
 };
 
 const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
+
+int noc_aov_components(noc_aov aov) { return aov == NOC_AOV_NORMAL || aov == NOC_AOV_MOTION ? 3 : 1; }
 
 static bool asks(const noc_render_params *p, noc_aov aov) { return p->aovs >> aov & 1; }
 
@@ -22,6 +40,7 @@ static bool has_query(const noc_render_params *p) {
 
 noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
     static const noc_aov of_reservoirs[] = { NOC_AOV_DENSITY, NOC_AOV_LIGHT, NOC_AOV_WEIGHT, NOC_AOV_CONFIDENCE };
+    static const noc_aov of_light[] = { NOC_AOV_GROUP, NOC_AOV_PLACED, NOC_AOV_LUMINANCE, NOC_AOV_ILLUMINANCE };
     if (p->aovs >> NOC_AOV_COUNT)
         return noc_error(log, NOC_ERR_ARGUMENT, "render: aovs is 0x%x, must be bits 1 << noc_aov", p->aovs);
     if (asks(p, NOC_AOV_LIGHTS) && !has_query(p))
@@ -29,9 +48,13 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
                          "render: view \"lights\": only ris and restir with candidates influence or lists ask for "
                          "the lights around a point");
     for (size_t i = 0; i < NOC_COUNT(of_reservoirs); i++)
-        if (asks(p, of_reservoirs[i]) && p->method == NOC_METHOD_REFERENCE)
-            return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": the reference method chooses no light",
-                             names[of_reservoirs[i]]);
+        if (asks(p, of_reservoirs[i]) && (p->method == NOC_METHOD_REFERENCE || p->method == NOC_METHOD_HEADLIGHT))
+            return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": the %s method chooses no light",
+                             names[of_reservoirs[i]], p->method == NOC_METHOD_REFERENCE ? "reference" : "headlight");
+    for (size_t i = 0; i < NOC_COUNT(of_light); i++)
+        if (asks(p, of_light[i]) && p->method == NOC_METHOD_HEADLIGHT)
+            return noc_error(log, NOC_ERR_ARGUMENT,
+                             "render: view \"%s\": the headlight method has no light of the scene", names[of_light[i]]);
     for (noc_aov aov = NOC_AOV_VARIANCE; aov <= NOC_AOV_ERROR; aov++)
         if (asks(p, aov) && !p->accumulate)
             return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": frames must be accumulated", names[aov]);
@@ -59,26 +82,40 @@ static const uint8_t class_colours[NOC_LABEL_COUNT][3] = {
 static const char *const placed_names[NOC_PLACED_COUNT] = { "other lights", "mapped lamps", "inferred lamps" };
 static const uint8_t placed_colours[NOC_PLACED_COUNT][3] = { { 120, 120, 140 }, { 127, 227, 245 }, { 230, 110, 0 } };
 
+static const struct {
+    const char *title, *unit;
+    noc_channel_scale scale;
+} kinds[NOC_AOV_COUNT] = {
+    [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_DENSITY] = { "expected candidates of the chosen light", "candidates", NOC_CHANNEL_LOG },
+    [NOC_AOV_LIGHT] = { "chosen light: each its own colour", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_WEIGHT] = { "W of the reservoir (black: 0)", "", NOC_CHANNEL_LOG },
+    [NOC_AOV_CONFIDENCE] = { "M of the reservoir [candidates]", "candidates", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_RAYS] = { "shadow rays a pixel", "rays", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_VARIANCE] = { "variance of a frame [(cd/m\xb2)\xb2]", "(cd/m2)^2", NOC_CHANNEL_LOG },
+    [NOC_AOV_ERROR] = { "standard error of the mean, relative", "", NOC_CHANNEL_LOG },
+    [NOC_AOV_DEPTH] = { "distance from the eye [m]", "m", NOC_CHANNEL_LOG },
+    [NOC_AOV_NORMAL] = { "normal: red east, green north, blue up", "", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_CLASS] = { "semantic class", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_OBJECT] = { "object: each its own colour", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_GROUP] = { "group of lights that brings the most light", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_PLACED] = { "what brings the most light", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_MOTION] = { "where it was: red right, green down", "pixels", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_LUMINANCE] = { "luminance [cd/m\xb2]", "cd/m2", NOC_CHANNEL_LOG },
+    [NOC_AOV_ILLUMINANCE] = { "illuminance [lx]", "lx", NOC_CHANNEL_LOG },
+    [NOC_AOV_INFLUENTIAL] = { "light that brings the most: each its own colour", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_INFLUENTIAL_SHARE] = { "share of the light that brings the most", "", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_RUNNER_UP] = { "light that brings the second most: each its own colour", "", NOC_CHANNEL_LABELS },
+    [NOC_AOV_RUNNER_UP_SHARE] = { "share of the light that brings the second most", "", NOC_CHANNEL_LINEAR },
+};
+
+noc_aov_info noc_aov_get_info(noc_aov aov) {
+    if ((unsigned)aov >= NOC_AOV_COUNT)
+        return (noc_aov_info){ .name = "", .unit = "", .title = "" };
+    return (noc_aov_info){ names[aov], kinds[aov].unit, kinds[aov].title, kinds[aov].scale, noc_aov_components(aov) };
+}
+
 void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
-    static const struct {
-        const char *title, *unit;
-        noc_channel_scale scale;
-    } kinds[NOC_AOV_COUNT] = {
-        [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_DENSITY] = { "expected candidates of the chosen light", "candidates", NOC_CHANNEL_LOG },
-        [NOC_AOV_LIGHT] = { "chosen light: each its own colour", "", NOC_CHANNEL_LABELS },
-        [NOC_AOV_WEIGHT] = { "W of the reservoir (black: 0)", "", NOC_CHANNEL_LOG },
-        [NOC_AOV_CONFIDENCE] = { "M of the reservoir [candidates]", "candidates", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_RAYS] = { "shadow rays a pixel", "rays", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_VARIANCE] = { "variance of a frame [(cd/m\xb2)\xb2]", "(cd/m2)^2", NOC_CHANNEL_LOG },
-        [NOC_AOV_ERROR] = { "standard error of the mean, relative", "", NOC_CHANNEL_LOG },
-        [NOC_AOV_DEPTH] = { "distance from the eye [m]", "m", NOC_CHANNEL_LOG },
-        [NOC_AOV_NORMAL] = { "normal: red east, green north, blue up", "", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_CLASS] = { "semantic class", "", NOC_CHANNEL_LABELS },
-        [NOC_AOV_OBJECT] = { "object: each its own colour", "", NOC_CHANNEL_LABELS },
-        [NOC_AOV_GROUP] = { "group of lights that brings the most light", "", NOC_CHANNEL_LABELS },
-        [NOC_AOV_PLACED] = { "what brings the most light", "", NOC_CHANNEL_LABELS },
-    };
     static const struct {
         const char *const *names;
         size_t count;
@@ -87,10 +124,11 @@ void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *chan
         [NOC_AOV_CLASS] = { noc_label_names, NOC_LABEL_COUNT, class_colours },
         [NOC_AOV_PLACED] = { placed_names, NOC_PLACED_COUNT, placed_colours },
     };
-    channel->name = names[aov];
-    channel->unit = kinds[aov].unit;
-    channel->scale = kinds[aov].scale;
-    channel->title = kinds[aov].title;
+    noc_aov_info info = noc_aov_get_info(aov);
+    channel->name = info.name;
+    channel->unit = info.unit;
+    channel->scale = info.scale;
+    channel->title = info.title;
     channel->labels = labels[aov].names;
     channel->label_count = labels[aov].count;
     channel->label_colours = labels[aov].colours;

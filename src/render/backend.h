@@ -23,10 +23,38 @@ typedef struct noc_frame {
     uint32_t epoch;                /* counts resets: what was learned in another one is forgotten */
     frame_constants constants;     /* what kernels and shaders read of it */
     uint64_t accumulated;          /* frames in the mean so far; 0 starts it anew */
-    bool history;    /* the frame before is of the same size and parameters: its reservoirs can be reused */
-    int history_set; /* set that holds the previous frame's reservoirs */
-    int gbuffer;     /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+    bool seen_before; /* constants.previous is the camera of the complete frame before, in pixels of this size */
+    bool history;     /* the frame before is of the same size and parameters: its reservoirs can be reused */
+    int history_set;  /* set that holds the previous frame's reservoirs */
+    int gbuffer;      /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
+
+/* What estimates apart from frames are made with (render/influence.c), while the scene is held for a frame. */
+typedef struct noc_asking {
+    noc_pool *pool;
+    const struct noc_tree *tree;           /* NULL: not asked for */
+    const struct noc_map_light *map_light; /* NULL: the scene's map does not light */
+    float ray_offset;                      /* least, of shadow rays, m */
+} noc_asking;
+
+/* A segment that something may be in the way of. */
+typedef struct noc_sight {
+    float o[3], d[3]; /* its beginning, and from there to its end */
+    uint32_t light;   /* that it leads to: any number will do, equal ones are traced together */
+} noc_sight;
+
+/* The last complete frame alone, and what it saw: planes of the picture's width * height numbers, rows from the top. */
+typedef struct noc_frame_rows {
+    float *rgb[3];
+    float *reflects[3]; /* of a surface: albedo and what gloss mirrors at least; light over it has no texture */
+    float *normal[3];   /* unit; 0: there is no surface */
+    float *depth;       /* along the view, m; 0: there is no surface */
+    float *motion[3];   /* as NOC_AOV_MOTION, which the frame must have kept */
+    uint32_t *what; /* a noc_row_kind, NOC_ROW_GLOSSY, and from bit 2 on 1 + the instance that shows it, 0: the world */
+} noc_frame_rows;
+
+typedef enum noc_row_kind { NOC_ROW_NOTHING, NOC_ROW_EMITTER, NOC_ROW_SURFACE, NOC_ROW_KINDS = 3 } noc_row_kind;
+#define NOC_ROW_GLOSSY 0x80000000u /* it mirrors, so its light moves with the eye */
 
 struct noc_influence;
 typedef struct noc_backend {
@@ -56,6 +84,9 @@ typedef struct noc_backend {
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none).
      * False where it kept none. */
     bool (*aov)(void *view, noc_aov aov, float *value);
+    void (*rows)(void *view, const frame_camera *camera, const noc_frame_rows *rows); /* camera: of that frame */
+    /* Calls fn for each item by the device's threads, as noc_pool_run does. */
+    void (*run)(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *view, noc_frame_stats *stats);
     /* Of the structure that the last frame drew candidates from, though other views' frames may have followed. */
@@ -63,6 +94,12 @@ typedef struct noc_backend {
     /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any.
      */
     noc_status (*influence)(void *view, const noc_render_params *params, const struct noc_influence **volumes);
+    /* Nearest hits of rays that are in order, in the scene as it is: noc_view_cast. */
+    noc_status (*cast)(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
+    /* tree: lights are drawn from one. */
+    noc_status (*ask)(void *view, const noc_render_params *params, bool tree, noc_asking *out);
+    /* Of each whether nothing is in the way, in the scene as `ask` has found it. Any number of threads may call it. */
+    void (*clear)(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
     void (*record)(void *view, bool on);
     noc_status (*replay)(void *view, double *seconds);
@@ -90,6 +127,7 @@ noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log);
 /* aov.c */
 /* Can these views be had of these parameters? What cannot is reported. */
 noc_status noc_check_aovs(const noc_render_params *params, noc_log *log);
+int noc_aov_components(noc_aov aov); /* of a pixel: 1, or 3 */
 /* Name, unit, title and scale. */
 void noc_describe_aov(const noc_render_params *params, noc_aov aov, noc_channel *channel);
 
@@ -97,6 +135,7 @@ void noc_describe_aov(const noc_render_params *params, noc_aov aov, noc_channel 
 typedef struct noc_history {
     uint32_t epoch;
     bool started;  /* params and camera are those of an earlier frame */
+    bool viewed;   /* view is the camera of a complete frame */
     bool reusable; /* that frame was completed, and its reservoirs are there */
     noc_render_params params;
     noc_camera camera;

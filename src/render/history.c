@@ -45,13 +45,16 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
     *frame = (noc_frame){ .params = params,
                           .epoch = h->epoch,
                           .accumulated = params->accumulate ? h->accumulated : 0,
+                          .seen_before = h->viewed,
                           .history = h->started && h->reusable,
                           .history_set = h->set,
                           .gbuffer = 1 - h->gbuffer };
     frame_constants *c = &frame->constants;
     noc_make_frame_constants(params, h->index, frame->history, c);
     noc_make_frame_camera(camera, params, h->index, &c->camera);
-    c->previous = frame->history ? h->view : c->camera;
+    c->previous = h->viewed ? h->view : c->camera;
+    c->previous.width = c->camera.width;
+    c->previous.height = c->camera.height;
     h->started = true;
     h->reusable = false; /* until the frame is completed */
     h->params = *params;
@@ -61,6 +64,7 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
 
 void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
     h->view = frame->constants.camera;
+    h->viewed = true;
     h->gbuffer = frame->gbuffer;
     h->set = next_set;
     h->reusable = next_set >= 0;

@@ -31,6 +31,7 @@
 #define LISTS CANDIDATES ",candidates=lists"
 #define INFLUENCE CANDIDATES ",candidates=influence"
 #define RESTIR "method=restir"
+#define LIT "method=reference|is|ris|restir"
 #define SPATIAL RESTIR ",spatial=true"
 
 /* What a change of it makes a view forget (noc_option.resets); tests/render/test_resets.c holds rows to pictures. */
@@ -57,7 +58,8 @@ static const noc_option render_options[] = {
          "bearing of the map's middle, clockwise from north", MEAN),
     BOOL(P, environment_light, "environment-light", "Picture", "the map lights the city, in place of the sky", MEAN),
 
-    CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated", SAMPLES),
+    CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir|headlight",
+           "how direct light is estimated", SAMPLES),
     CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|influence|light-bvh",
          "ris, restir: where light candidates come from", CANDIDATES, .aliases = "bvh=influence|tree=light-bvh", MEAN),
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN, MEAN),
@@ -73,12 +75,12 @@ static const noc_option render_options[] = {
     CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible",
          "influence: lights reach as far as they shine, or see", INFLUENCE, MEAN),
     INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "",
-         "influence: so many close lights may share a volume", INFLUENCE, MEAN),
+         "influence: so many near lights share a volume", INFLUENCE, MEAN),
     INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "",
          "influence: of so many draws one is from all lights", INFLUENCE, MEAN),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame", "method=reference"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls",
-         SAMPLES),
+         LIT, SAMPLES),
     CHOICE(P, isa, "isa", "Estimator", "auto|scalar|baseline|avx2|avx512",
          "instruction set; auto: NOCTURNE_ISA's, else the widest; the picture is the same"),
 
@@ -248,6 +250,7 @@ static const noc_option camera_options[] = {
     TEXT(P, target, "target", "Camera", "X,Y,Z", "what it looks at"),
     TEXT(P, crs, "camera-crs", "Camera", "CRS",
          "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
+    TEXT(P, photo_points, "photo-points", "Camera", "FILE", "camera of a photograph, by its points (CSV)"),
     REAL(P, fov, "fov", "Camera", 1, 170, "degrees", "vertical field of view; else that of the view, with --eye 50"),
     END,
 };

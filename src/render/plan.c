@@ -45,6 +45,7 @@ const noc_pass_row noc_passes[NOC_PASS_COUNT] = {
                          NOC_RAYS_OCCLUSION },
     [NOC_PASS_SHADE_ALL] = { "shade all lights", NOC_DOMAIN_PIXEL, B(SURFACES) | B(COLOUR), B(COLOUR), 0,
                              NOC_RAYS_OCCLUSION },
+    [NOC_PASS_HEADLIGHT] = { "headlight", NOC_DOMAIN_PIXEL, B(SURFACES) | B(COLOUR), B(COLOUR) },
     [NOC_PASS_SKY] = { "sky", NOC_DOMAIN_PIXEL, B(SURFACES) | B(COLOUR), B(COLOUR), 0, NOC_RAYS_OCCLUSION },
 };
 
@@ -131,6 +132,10 @@ static void add_candidates(maker *m, const noc_render_params *p) {
 static void add_shading(maker *m, const noc_render_params *p, bool sky, bool reused) {
     noc_plan *plan = m->plan;
     add(m, NOC_PASS_EMITTERS);
+    if (p->method == NOC_METHOD_HEADLIGHT) {
+        add(m, NOC_PASS_HEADLIGHT);
+        return;
+    }
     if (p->method == NOC_METHOD_REFERENCE)
         add(m, NOC_PASS_SHADE_ALL);
     if (plan->shares_rays && !reused)
@@ -159,7 +164,7 @@ void noc_plan_make(const noc_render_params *p, bool map, int history_set, noc_pl
                                         : temporal || rounds ? 2
                                                              : 1,
                                         history + 1),
-                        .draws = p->method != NOC_METHOD_REFERENCE,
+                        .draws = p->method != NOC_METHOD_REFERENCE && p->method != NOC_METHOD_HEADLIGHT,
                         .candidates = one ? NOC_CANDIDATES_UNIFORM : p->candidates,
                         .candidate_count = one ? 1 : p->draws,
                         .shares_rays = lists && (!restir || reuses_visibility(p)),

@@ -1,23 +1,11 @@
 /* A view: checks, drives a backend through the plan of a frame, keeps history. */
 #include "image/internal.h"
 #include "light/influence.h"
-#include "render/device.h"
+#include "render/view.h"
 
 #include <nocturne/option.h>
 #include <stdio.h>
 #include <unistd.h>
-
-struct noc_view {
-    noc_device *device;
-    noc_world *world;
-    const noc_scene *scene;
-    noc_log *log;
-    const noc_backend *backend;
-    void *state; /* the backend's */
-    noc_history history;
-    int width, height, sets; /* of the backend's buffers; 0: none */
-    noc_frame_stats stats;
-};
 
 noc_view *noc_view_create(noc_device *device, const noc_scene *scene) {
     if (!device)
@@ -110,12 +98,35 @@ static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
     return status;
 }
 
+static bool same_place(const frame_camera *a, const frame_camera *b) {
+    frame_camera c = *b;
+    memcpy(c.jitter, a->jitter, sizeof(c.jitter));
+    return !memcmp(a, &c, sizeof(c));
+}
+
+static void remember(noc_view *v, const noc_frame *frame) {
+    const noc_scene_versions *now = &v->scene->versions, *then = &v->last.seen;
+    const frame_constants *c = &frame->constants;
+    bool connected = frame->seen_before;
+    v->last = (noc_last_frame){
+        .number = v->last.number + 1,
+        .there = true,
+        .motion = frame->params->aovs >> NOC_AOV_MOTION & 1,
+        .connected = connected,
+        .still = connected && now->commits == then->commits && same_place(&c->camera, &c->previous),
+        .isa = frame->params->isa,
+        .camera = c->camera,
+        .seen = *now,
+    };
+}
+
 static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
                              const noc_progress *progress) {
     noc_plan plan;
     noc_frame frame;
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
     bool map = v->scene->environment != NULL;
+    v->last.there = false;
     noc_plan_make(p, map, -1, &plan);
     noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
@@ -131,10 +142,12 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     noc_frame_stats stats = { .dropped = frame.constants.index ? v->stats.dropped : 0 };
     if (status == NOC_OK)
         status = v->backend->accumulate(v->state, &frame);
-    if (status == NOC_OK)
+    if (status == NOC_OK) {
         noc_history_end(&v->history, &frame, plan.next_history);
-    else
+        remember(v, &frame);
+    } else {
         noc_history_drop(&v->history, &frame, stage == 1);
+    }
     v->backend->stats(v->state, &stats);
     stats.frames = v->history.accumulated;
     stats.wall_seconds = noc_wall_seconds() - wall;
@@ -210,7 +223,7 @@ noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
     }
     if (!v->width || !v->history.accumulated)
         return NULL;
-    noc_channel *channel = noc_channel_create(v->width, v->height, aov == NOC_AOV_NORMAL ? 3 : 1, v->log);
+    noc_channel *channel = noc_channel_create(v->width, v->height, noc_aov_components(aov), v->log);
     if (!channel)
         return NULL;
     noc_describe_aov(&v->history.params, aov, channel);
@@ -220,6 +233,12 @@ noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
     noc_error(v->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs",
               noc_aov_name(aov));
     return NULL;
+}
+
+void noc_view_rows(noc_view *v, const noc_frame_rows *rows) {
+    noc_scene_lock_read(v->scene);
+    v->backend->rows(v->state, &v->last.camera, rows);
+    noc_scene_unlock_read(v->scene);
 }
 
 void noc_view_get_stats(const noc_view *v, noc_frame_stats *stats) {

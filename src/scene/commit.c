@@ -399,7 +399,7 @@ static void apply_edit(commit *c, noc_edit *e) {
     case NOC_EDIT_ADD_INSTANCE: place_instance(c, e); break;
     case NOC_EDIT_TRANSFORM: move_instance(c, e); break;
     case NOC_EDIT_REMOVE_INSTANCE: remove_instance(c, e); break;
-    case NOC_EDIT_WINDOWS: noc_windows_switch(s, e->windows, &c->changes); break;
+    case NOC_EDIT_WINDOWS: noc_windows_switch(s, &e->windows, &c->changes); break;
     }
 }
 

@@ -40,6 +40,10 @@ noc_status noc_kept_environment(noct_file *f, noc_scene *s);
 void noc_keep_traffic(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_traffic(noct_file *f, noc_scene *s);
 
+/* street.c */
+void noc_keep_streets(noct_writer *w, const noc_scene *s);
+noc_status noc_kept_streets(noct_file *f, noc_scene *s);
+
 /* keep_textures.c: before the materials that have them. */
 void noc_keep_textures(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_textures(noct_file *f, noc_scene *s);

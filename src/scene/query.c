@@ -240,16 +240,27 @@ bool noc_camera_project(const noc_camera *camera, int width, int height, const d
     return isfinite(pixel[0]) && isfinite(pixel[1]);
 }
 
-noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2], double distance,
-                                double xyz[3]) {
+noc_status noc_camera_ray(const noc_camera *camera, int width, int height, const double pixel[2], noc_ray *ray) {
     double axes[3][3], d[3];
-    if (!camera || !pixel || !xyz || !isfinite(distance) || !camera_axes(camera, width, height, axes))
+    if (!camera || !pixel || !ray || !camera_axes(camera, width, height, axes))
         return NOC_ERR_ARGUMENT;
     double x = 2 * pixel[0] / width - 1, y = 1 - 2 * pixel[1] / height;
     for (int k = 0; k < 3; k++)
         d[k] = axes[0][k] + x * axes[1][k] + y * axes[2][k];
-    double scale = distance / sqrt(dot(d, d));
+    *ray = (noc_ray){ .far = INFINITY };
+    for (int k = 0; k < 3; k++) {
+        ray->origin[k] = camera->eye[k];
+        ray->direction[k] = d[k] / sqrt(dot(d, d));
+    }
+    return NOC_OK;
+}
+
+noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2], double distance,
+                                double xyz[3]) {
+    noc_ray ray;
+    if (!xyz || !isfinite(distance) || noc_camera_ray(camera, width, height, pixel, &ray))
+        return NOC_ERR_ARGUMENT;
     for (int k = 0; k < 3; k++)
-        xyz[k] = camera->eye[k] + scale * d[k];
+        xyz[k] = ray.origin[k] + distance * ray.direction[k];
     return NOC_OK;
 }

@@ -81,6 +81,8 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->texels);
     array_free(&scene->textures);
     array_free(&scene->gaps);
+    array_free(&scene->streets);
+    array_free(&scene->street_points);
     array_free(&scene->edits);
     free_slots(&scene->light_slots);
     array_free(&scene->dark_slots);

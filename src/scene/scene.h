@@ -99,6 +99,13 @@ typedef struct noc_scene_car {
     double axles; /* m between its axles, both of which are on the route */
 } noc_scene_car;
 
+/* A road of a map, by its name: the middle of its carriageway. */
+typedef struct noc_scene_street {
+    const char *name, *id;
+    float width;           /* m */
+    uint32_t first, count; /* points */
+} noc_scene_street;
+
 typedef struct noc_scene_group {
     const char *name;
     float scale[3];
@@ -154,6 +161,12 @@ typedef enum noc_edit_kind {
     NOC_EDIT_WINDOWS,
 } noc_edit_kind;
 
+/* Which windows are lit: fields of noc_window_params. */
+typedef struct noc_window_switch {
+    double lit, hour;
+    uint32_t seed;
+} noc_window_switch;
+
 /* One staged edit. */
 typedef struct noc_edit {
     noc_edit_kind kind;
@@ -165,7 +178,7 @@ typedef struct noc_edit {
         noc_material material;
         float rgb[3];
         float transform[12];
-        double windows[2]; /* share that is lit, hour */
+        noc_window_switch windows;
         noc_light_record light;
     };
 } noc_edit;
@@ -241,8 +254,11 @@ struct noc_scene {
     NOC_ARRAY(noc_scene_instance) instances;
     NOC_ARRAY(noc_scene_stop) stops;
     NOC_ARRAY(noc_scene_route) routes;
-    NOC_ARRAY(noc_scene_car) cars;         /* ascending by their instances */
-    double time;                           /* s, of the cars */
+    NOC_ARRAY(noc_scene_car) cars; /* ascending by their instances */
+    double time;                   /* s, of the cars */
+    bool cars_hidden;              /* noc_scene_show_cars */
+    NOC_ARRAY(noc_scene_street) streets;
+    NOC_ARRAY(float) street_points;        /* 2 each */
     NOC_ARRAY(noc_scene_group) groups;     /* group g is at g - 1; only who edits looks at them */
     NOC_ARRAY(noc_scene_profile) profiles; /* profile p is at p - 1 */
     NOC_ARRAY(float) profile_cells;        /* core/profile.h; data is 16-byte aligned */
@@ -444,7 +460,12 @@ typedef struct noc_pane {
 bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane);
 /* Before the first commit: lit or dark, as params say. */
 void noc_scene_light_windows(noc_scene *s, const noc_window_params *params);
-void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes *c);
+void noc_windows_switch(noc_scene *s, const noc_window_switch *to, noc_changes *c);
+/* The number under which the share must be for a window to be dark: that which it was made with, where the seed is the
+ * default, else one that this and the seed decide. Windows that were made with one number share that of any seed; 1
+ * stays 1. */
+double noc_window_level(float level, uint32_t seed);
+enum { NOC_WINDOW_SEED = 1 };                                        /* the default, which windows are made with */
 noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light); /* NULL: the light is no window's, and never was */
 void noc_window_forget(noc_scene *s, uint32_t light);                /* a light that goes; it need not be a window's */
 const char *noc_window_fault(const noc_window_params *p); /* what is wrong with lit_windows or hour, NULL if nothing */
@@ -460,7 +481,14 @@ void noc_join_instance_bounds(const noc_scene *s, const noc_scene_instance *inst
 int noc_scene_add_route(noc_scene *s, const noc_scene_stop *stops, size_t count);
 /* An instance of the model that takes it, where it is at the scene's time. false after reporting. */
 bool noc_scene_add_car(noc_scene *s, int model, int route, double start, double axles);
+/* A car's transform at a time: its x is forward, y left and z up, and its origin lies on the ground between its axles.
+ */
+void noc_car_pose(const noc_scene *s, const noc_scene_car *car, double time, double m[12]);
 void noc_car_forget(noc_scene *s, uint32_t instance); /* one that goes; it need not be a car's */
+
+/* street.c: before the first commit, a street of those points, 3 numbers each, which are copied. false after reporting
+ * that there is no memory. */
+bool noc_scene_add_street(noc_scene *s, const noc_scene_street *street, const double *xyz, size_t count);
 
 /* Bytes that it takes, about. */
 size_t noc_scene_bytes(const noc_scene *s);

@@ -39,8 +39,7 @@ static void set_column(double m[12], int column, const double v[3]) {
         m[4 * k + column] = v[k];
 }
 
-/* Of a car, whose x is forward, y left and z up, and whose origin lies on the ground between its axles. */
-static void pose(const noc_scene *s, const noc_scene_car *car, double time, double m[12]) {
+void noc_car_pose(const noc_scene *s, const noc_scene_car *car, double time, double m[12]) {
     const noc_scene_route *route = &s->routes.data[car->route];
     const noc_scene_stop *stops = s->stops.data + route->first;
     double period = stops[route->count - 1].seconds, second = fmod(car->start + time, period);
@@ -75,7 +74,7 @@ static void pose(const noc_scene *s, const noc_scene_car *car, double time, doub
 bool noc_scene_add_car(noc_scene *s, int model, int route, double start, double axles) {
     noc_scene_car car = { .route = (uint32_t)route, .start = start, .axles = axles };
     noc_instance instance = { .model = model };
-    pose(s, &car, s->time, instance.transform);
+    noc_car_pose(s, &car, s->time, instance.transform);
     int index = noc_scene_add_instance(s, &instance);
     if (index < 0)
         return false;
@@ -99,6 +98,22 @@ void noc_car_forget(noc_scene *s, uint32_t instance) {
     memmove(s->cars.data + low, s->cars.data + low + 1, (s->cars.len - low) * sizeof(*s->cars.data));
 }
 
+/* Out of sight: where the car is, 2 m under its place and as small as an instance may be. */
+static void hide(double m[12]) {
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            m[4 * row + column] *= 0.001;
+    m[11] -= 2;
+}
+
+static noc_status place(noc_scene *scene, const noc_scene_car *car, double seconds) {
+    double m[12];
+    noc_car_pose(scene, car, seconds, m);
+    if (scene->cars_hidden)
+        hide(m);
+    return noc_scene_set_transform(scene, (int)car->instance, m);
+}
+
 noc_status noc_scene_set_time(noc_scene *scene, double seconds) {
     if (!scene)
         return noc_null(NULL, __func__);
@@ -107,12 +122,32 @@ noc_status noc_scene_set_time(noc_scene *scene, double seconds) {
     noc_status status = NOC_OK;
     if (!array_reserve(&scene->edits, scene->edits.len + scene->cars.len)) /* all of them, or none */
         return noc_scene_out_of_memory(scene);
-    for (size_t i = 0; i < scene->cars.len && !status; i++) {
-        double m[12];
-        pose(scene, &scene->cars.data[i], seconds, m);
-        status = noc_scene_set_transform(scene, (int)scene->cars.data[i].instance, m);
-    }
+    for (size_t i = 0; i < scene->cars.len && !status; i++)
+        status = place(scene, &scene->cars.data[i], seconds);
     if (!status)
         scene->time = seconds;
+    return status;
+}
+
+noc_status noc_scene_show_cars(noc_scene *scene, bool shown) {
+    if (!scene)
+        return noc_null(NULL, __func__);
+    size_t lights = 0;
+    noc_status status = NOC_OK;
+    if (scene->cars.len && !scene->committed)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "cars are shown and hidden once the scene is committed");
+    for (size_t i = 0; i < scene->cars.len; i++)
+        lights += noc_scene_model_of(scene, (int)scene->instances.data[scene->cars.data[i].instance].model)->lights.len;
+    if (!array_reserve(&scene->edits, scene->edits.len + scene->cars.len + lights)) /* all of them, or none */
+        return noc_scene_out_of_memory(scene);
+    scene->cars_hidden = !shown;
+    for (size_t i = 0; i < scene->cars.len && !status; i++) {
+        const noc_scene_instance *car = &scene->instances.data[scene->cars.data[i].instance];
+        const noc_scene_model *model = noc_scene_model_of(scene, (int)car->model);
+        status = place(scene, &scene->cars.data[i], scene->time);
+        for (size_t k = 0; k < model->lights.len && !status; k++)
+            status = noc_scene_set_emission(scene, (int)car->lights[k],
+                                            shown ? model->lights.data[k].e : (const float[]){ 0, 0, 0 });
+    }
     return status;
 }

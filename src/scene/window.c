@@ -48,14 +48,27 @@ const char *noc_window_fault(const noc_window_params *p) {
     return p->hour >= 0 && p->hour <= 24 ? NULL : "hour must be in 0..24";
 }
 
-static void emission_of(const noc_scene_window *w, const double share[NOC_WINDOW_KIND_COUNT], float e[3]) {
-    for (int k = 0; k < 3; k++)
-        e[k] = (double)w->level < share[w->kind] ? w->emission[k] : 0;
+double noc_window_level(float level, uint32_t seed) {
+    uint32_t bits;
+    if (seed == NOC_WINDOW_SEED || level >= 1)
+        return level;
+    memcpy(&bits, &level, sizeof(bits));
+    uint64_t h = bits + 0x9e3779b97f4a7c15u * ((uint64_t)seed + 1); /* splitmix64 */
+    h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ h >> 27) * 0x94d049bb133111ebu;
+    return (double)((h ^ h >> 31) >> 11) * 0x1p-53;
 }
 
-static void shares(const double lit_and_hour[2], double share[NOC_WINDOW_KIND_COUNT]) {
+static void emission_of(const noc_scene_window *w, const noc_window_switch *to,
+                        const double share[NOC_WINDOW_KIND_COUNT], float e[3]) {
+    bool lit = noc_window_level(w->level, to->seed) < share[w->kind];
+    for (int k = 0; k < 3; k++)
+        e[k] = lit ? w->emission[k] : 0;
+}
+
+static void shares(const noc_window_switch *to, double share[NOC_WINDOW_KIND_COUNT]) {
     for (int kind = 0; kind < NOC_WINDOW_KIND_COUNT; kind++)
-        share[kind] = noc_window_share((noc_window_kind)kind, lit_and_hour[0], lit_and_hour[1]);
+        share[kind] = noc_window_share((noc_window_kind)kind, to->lit, to->hour);
 }
 
 bool noc_scene_reserve_walls(noc_scene *s) {
@@ -94,20 +107,21 @@ bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
 
 void noc_scene_light_windows(noc_scene *s, const noc_window_params *params) {
     double share[NOC_WINDOW_KIND_COUNT];
-    shares((double[]){ params->lit_windows, params->hour }, share);
+    noc_window_switch to = { params->lit_windows, params->hour, params->seed };
+    shares(&to, share);
     for (size_t i = 0; i < s->windows.len; i++)
-        emission_of(&s->windows.data[i], share, s->lights.data[s->windows.data[i].light].e);
+        emission_of(&s->windows.data[i], &to, share, s->lights.data[s->windows.data[i].light].e);
 }
 
-void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes *c) {
+void noc_windows_switch(noc_scene *s, const noc_window_switch *to, noc_changes *c) {
     double share[NOC_WINDOW_KIND_COUNT];
-    shares(lit_and_hour, share);
+    shares(to, share);
     for (size_t i = 0; i < s->windows.len; i++) {
         const noc_scene_window *w = &s->windows.data[i];
         if (w->removed)
             continue;
         noc_light_record r = noc_light_made(s, w->light);
-        emission_of(w, share, r.e);
+        emission_of(w, to, share, r.e);
         noc_light_change(s, w->light, &r, c);
     }
 }
@@ -139,6 +153,6 @@ noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *para
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "windows: %s", wrong);
     if (scene->no_memory)
         return NOC_ERR_MEMORY;
-    noc_edit edit = { .kind = NOC_EDIT_WINDOWS, .windows = { params->lit_windows, params->hour } };
+    noc_edit edit = { .kind = NOC_EDIT_WINDOWS, .windows = { params->lit_windows, params->hour, params->seed } };
     return array_push(&scene->edits, edit) ? NOC_OK : noc_scene_out_of_memory(scene);
 }

@@ -26,6 +26,10 @@ static noc_camera camera;
     P(0, noc_image_write(image, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
     P(0, noc_image_write_srgb8(NULL, 1, 1, "a.png", NULL, NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                         \
+    P(noc_image_encoder_destroy(noc_image_encoder_create(NULL)), true)                                                 \
+    P(noc_image_encoder_destroy(NULL), true)                                                                           \
+    P(0, noc_image_encode_srgb8(NULL, NOC_IMAGE_PNG, 0, (uint8_t[3]){ 0 }, 1, 1, &(const uint8_t *){ 0 },              \
+                                &(size_t){ 0 }) == NOC_ERR_ARGUMENT)                                                   \
     P(0, noc_image_check_path(NULL, NULL) == NOC_ERR_ARGUMENT)                                                         \
     P(0, noc_image_read(NULL, NULL, NULL) == NULL)                                                                     \
     P(0, noc_image_read_text(NULL, "key", &(char *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                   \
@@ -41,6 +45,10 @@ static noc_camera camera;
     P(noc_channel_destroy(NULL), true)                                                                                 \
     P(0, noc_channel_to_srgb8(NULL, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)      \
     P(0, noc_channel_to_srgb8(channel, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                              \
+    P(0, noc_channel_bar(NULL, NULL, &(noc_bar){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_channel_bar(channel, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(noc_bar_colour(0, NULL), true)                                                                                   \
+    P(noc_label_colour(NULL, 0, NULL), true)                                                                           \
     P(0, noc_channel_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
     P(0, noc_channel_write(channel, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
     P(noc_log_destroy(NULL), noc_log_last_error(NULL)[0] == 0)                                                         \
@@ -71,6 +79,12 @@ static noc_camera camera;
     P(0, noc_scene_remove_instance(NULL, 0) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_instance_light(NULL, 0, 0) == -1)                                                                   \
     P(0, noc_scene_set_time(NULL, 0) == NOC_ERR_ARGUMENT)                                                              \
+    P(0, noc_recipe_write(NULL, NULL, 0, NULL, &(char *){ 0 }) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_recipe_write(&(noc_recipe_info){ 0 }, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                           \
+    P(0, noc_text_utf8(NULL) == 1)                                                                                     \
+    P(0, noc_text_yaml(NULL, 0, NULL) == 2)                                                                            \
+    P(0, noc_scene_show_cars(NULL, true) == NOC_ERR_ARGUMENT)                                                          \
+    P(0, noc_group_state_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                        \
     P(0, noc_scene_set_windows(NULL, &(noc_window_params){ .hour = 21 }) == NOC_ERR_ARGUMENT)                          \
     P(0, noc_scene_set_windows(scene, NULL) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_set_material(NULL, 0, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)                       \
@@ -119,6 +133,8 @@ static noc_camera camera;
     P(0, noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, 1, NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, !noc_camera_project(NULL, 4, 4, (double[3]){ 0 }, (double[2]){ 0 }, NULL))                                    \
     P(0, !noc_camera_project(&camera, 4, 4, NULL, NULL, NULL))                                                         \
+    P(0, noc_camera_ray(NULL, 4, 4, (double[2]){ 0 }, &(noc_ray){ 0 }) == NOC_ERR_ARGUMENT)                            \
+    P(0, noc_camera_ray(&camera, 4, 4, NULL, NULL) == NOC_ERR_ARGUMENT)                                                \
     P(0, noc_camera_unproject(NULL, 4, 4, (double[2]){ 0 }, 1, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                  \
     P(0, noc_camera_unproject(&camera, 4, 4, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                       \
     P(0, noc_scene_add_city(NULL, NULL) == NOC_ERR_ARGUMENT)                                                           \
@@ -244,6 +260,27 @@ static noc_camera camera;
     P(noc_view_get_stats(view, NULL), true)                                                                            \
     P(noc_view_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                       \
     P(noc_view_light_stats(view, NULL), true)                                                                          \
+    P(0, noc_view_cast(NULL, &(noc_ray){ 0 }, 1, &(noc_hit){ 0 }) == NOC_ERR_ARGUMENT)                                 \
+    P(0, noc_view_cast(view, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                       \
+    P(0, noc_navigator_create(NULL, NULL, NULL) == NULL)                                                               \
+    P(0, noc_navigator_create(scene, NULL, NULL) == NULL)                                                              \
+    P(noc_navigator_destroy(NULL), true)                                                                               \
+    P(0, noc_navigator_input(NULL, &(noc_navigate_input){ 0 }, NULL) == NOC_ERR_ARGUMENT)                              \
+    P(noc_navigator_camera(NULL, &(noc_camera){ 0 }), !noc_navigator_moves(NULL))                                      \
+    P(0, noc_navigator_set_mode(NULL, NOC_NAVIGATE_FLY) == NOC_ERR_ARGUMENT)                                           \
+    P(0, noc_navigator_set_speed(NULL, 1) == NOC_ERR_ARGUMENT)                                                         \
+    P(0, noc_navigator_mode(NULL) == NOC_NAVIGATE_ORBIT && noc_navigator_speed(NULL) == 0)                             \
+    P(0, noc_navigator_set_camera(NULL, &camera) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_navigator_go(NULL, &camera) == NOC_ERR_ARGUMENT)                                                          \
+    P(0, !noc_navigator_jump(NULL, (double[2]){ 0 }, 1))                                                               \
+    P(0, noc_camera_align(NULL, 4, 8, 8, NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                               \
+    P(0, noc_scene_photo_camera(NULL, "a.csv", NULL, &camera, NULL) == NOC_ERR_ARGUMENT)                               \
+    P(0, noc_scene_photo_camera(scene, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_scene_map(NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                            \
+    P(0, noc_scene_map(scene, NULL, NULL, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                           \
+    P(0, noc_scene_get_car(NULL, 0, &(noc_car_info){ 0 }) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_scene_get_car(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                        \
+    P(0, noc_scene_track_count(NULL) == 0 && noc_scene_get_track(NULL, 0, NULL, 0) == 0)                               \
     P(0, noc_view_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                            \
     P(0, noc_view_write_influence(view, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_text_srgb8(NULL, 1, 1, 0, 0, NULL, 1, NULL) == 0)                                                         \
@@ -252,6 +289,36 @@ static noc_camera camera;
     P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
     P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
     P(0, noc_view_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_emitter_kind_name((noc_emitter_kind)99) != NULL)                                                          \
+    P(noc_region_destroy(noc_region_create(NULL)), true)                                                               \
+    P(noc_region_destroy(NULL), true)                                                                                  \
+    P(0, noc_region_add(NULL, NULL, 0) == NOC_ERR_ARGUMENT)                                                            \
+    P(noc_region_get_info(NULL, &(noc_region_info){ 0 }), true)                                                        \
+    P(noc_region_get_info(NULL, NULL), true)                                                                           \
+    P(0, noc_region_find(NULL, NULL, NULL, NULL, NULL) == NULL)                                                        \
+    P(0, noc_region_find(view, scene, NULL, NULL, NULL) == NULL)                                                       \
+    P(0, noc_ranking_create(NULL, NULL, NULL) == NULL)                                                                 \
+    P(0, noc_ranking_create(view, NULL, NULL) == NULL)                                                                 \
+    P(0, noc_scene_get_emitter(NULL, 0, &(noc_emitter){ 0 }) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_scene_get_emitter(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_view_reach(NULL, 0, NULL, &(noc_reach){ 0 }, NULL, 0, NULL) == NOC_ERR_ARGUMENT)                          \
+    P(0, noc_view_reach(view, 0, NULL, NULL, NULL, 0, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_region_add_object(NULL, scene, "a", 0) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_scene_object_slots(NULL) == 0)                                                                            \
+    P(0, noc_scene_streets(NULL) == 0)                                                                                 \
+    P(0, !noc_scene_get_street(NULL, 0, &(noc_street){ 0 }))                                                           \
+    P(0, !noc_scene_get_street(scene, 0, NULL))                                                                        \
+    P(0, noc_rings_read(NULL, &(noc_rings){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_rings_read("a.json", NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_rings_parse(NULL, &(noc_rings){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                           \
+    P(noc_rings_free(NULL), true)                                                                                      \
+    P(0, noc_smoother_create(NULL) == NULL)                                                                            \
+    P(noc_smoother_destroy(NULL), true)                                                                                \
+    P(0, noc_smoother_step(NULL, NULL, NULL) == NULL)                                                                  \
+    P(noc_smoother_reset(NULL), true)                                                                                  \
+    P(noc_ranking_destroy(NULL), true)                                                                                 \
+    P(0, noc_ranking_refine(NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_ranking_get(NULL, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_view_trace_floor(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
 #define NAME(call, check) #call " / " #check,

@@ -39,7 +39,7 @@ run render lamp.yaml --animate --path round --duration 1 --fps 4 --samples 1 -o 
 test "$(numbers . 'round-*.png')" = 4; result $? "a loop's pictures"
 
 # interrupted anywhere, with and without reuse of samples: the same pictures
-for way in "" "--preset interactive --segment 4" "--segment 3"; do
+for way in "--smooth --segment 4" "" "--preset interactive --segment 4" "--segment 3"; do
     rm -rf whole part && mkdir whole part
     # shellcheck disable=SC2086 # options, or none
     run render lamp.yaml --animate --frames 9 --samples 2 $way -o whole/%02d.png
@@ -49,7 +49,10 @@ for way in "" "--preset interactive --segment 4" "--segment 3"; do
     for f in whole/*; do cmp -s "$f" "part/${f#whole/}" || echo "$f"; done >why
     grep -q '9 pictures, 3 of them were there' out && test "$(numbers part '*.png')" = 9 && test ! -s why
     result $? "goes on as if it had not stopped: ${way:-default}" "$(cat why)"
+    test -e smooth.png || cp whole/05.png smooth.png
 done
+test "$(meta smooth.png smoothed)" = "for display" && test -z "$(meta whole/05.png smoothed)"
+result $? "smoothed pictures say so, and no others do"
 env --default-signal=INT "$program" render builtin:city --city-size 150 --size 64x36 --exposure 3 \
     --animate --frames 1000 --samples 1 -v -o long-%d.exr >out 2>err </dev/null &
 pid=$!

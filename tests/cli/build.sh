@@ -89,7 +89,7 @@ run render wet.noct --wet -q --frames 2 -o again.exr
 same "rain on a built city is built again, and does not fall twice" wet.exr again.exr
 expect "and does not dry" 2 'wet: wet.noct is built already, .*: build it again with this' \
     render wet.noct --no-wet -o a.png
-for options in '--window-seed 3' '--no-windows' '--lod 1' '--lamp-lumens 9' '--infer-lamps' '--bbox 0,0,1,1' \
+for options in '--window-kelvin 3000' '--no-windows' '--lod 1' '--lamp-lumens 9' '--infer-lamps' '--bbox 0,0,1,1' \
     '--storey-height 4' '--traffic' '--crs EPSG:25832' '--no-textures'; do
     # shellcheck disable=SC2086
     expect "no $options on a built city" 2 'rain.noct is built already, and that has decided it' \
@@ -99,7 +99,7 @@ expect "nor where it is built again" 2 'lod: rain.noct is built already' build r
 expect "or told of" 2 'lod: rain.noct is built already' info rain.noct --lod 1
 expect "nor lamps beside it" 1 'rain.noct: is a built city, which is an input alone' \
     render rain.noct --lamps city.gml -o a.png
-run render rain.noct --window-seed 1 --window-lit 0.8 --frames 1 -q -o a.png
+run render rain.noct --window-kelvin 2900 --window-lit 0.8 --frames 1 -q -o a.png
 test "$status" = 0 && test ! -s err
 result $? "what is said as it was built"
 printf 'nocturne: 1\ninputs: [rain.noct]\nwet: on\nwindows: { lit: 0.3 }\nwidth: 48\nheight: 32\n' >over.yaml

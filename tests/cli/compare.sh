@@ -51,6 +51,13 @@ for view in class depth normal; do
     expect "numbers of a view, $view" 1 "$view.exr: it holds the view \"$view\"" compare $view.exr $view.exr -o d.png
     expect "colours of a view, $view" 1 "$view.png: it holds the view \"$view\"" compare $view.png $view.png
 done
+for end in exr png; do
+    "$program" render $small -q --frames 2 --smooth -o smooth.$end && cp smooth.$end rough.$end &&
+        "$program" render $small -q --frames 2 -o rough.$end
+    expect "a smoothed picture, $end" 1 'picture is smoothed: it is for display' compare smooth.$end rough.$end -o d.png
+    expect "a smoothed reference, $end" 1 'reference is smoothed' compare rough.$end smooth.$end
+done
+expect "a smoothed view" 2 'exclude each other' render $small --smooth --show depth -o d.png
 expect "a view as the reference" 1 'depth.exr: it holds the view' compare reference.exr depth.exr
 "$program" render $small -q --method is --frames 1 --exposure 4 -o four.png
 "$program" render $small -q --method is --frames 1 --exposure 5 -o five.png

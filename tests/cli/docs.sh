@@ -58,12 +58,12 @@ mkdir files home
 mkdir files/folder
 cat >offers <<'OFFERS'
 nocturne comp: compare
-nocturne : build compare experiment help info init render
+nocturne : build compare experiment help influence info init render view
 nocturne help co: compare
 nocturne render --method re: reference restir
 nocturne render --method=re: reference restir
-nocturne render --method=: is reference restir ris
-nocturne render --method : is reference restir ris
+nocturne render --method=: headlight is reference restir ris
+nocturne render --method : headlight is reference restir ris
 nocturne render --jit:
 nocturne render --no-jit: --no-jitter
 nocturne info --met:

@@ -164,9 +164,9 @@ cat >lit.osm <<'END'
 END
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     run info --each-lamp --infer-lamps lit.osm
-    test $status = 0 && head -n 1 out | grep -q '^name,placed,x,y,z,lumens,shape,group,kelvin,.*,crs$' &&
+    test $status = 0 && head -n 1 out | grep -q '^name,placed,x,y,z,lumens,shape,group,kelvin,.*,crs,tags$' &&
         test "$(wc -l <out)" = 8 &&
-        grep -q '^"node/3",mapped,.*,5000,disc,"lamps",3000,' out &&
+        grep -q '^"node/3",mapped,.*,5000,disc,"lamps",3000,.*,"highway=street_lamp"$' out &&
         test "$(grep -c '^"inferred/way/4/[1-6]",inferred,' out)" = 6
     result $? "info of each lamp"
     run info --each-lamp --infer-lamps --json lit.osm

@@ -83,4 +83,13 @@ run render one/east/lamp.obj lone.obj "$PWD/two/east/lamp.obj" lamp.obj one/east
 test $status = 0 && test "$(meta twins.png inputs)" = \
     "one/east/lamp.obj, lone.obj, two/east/lamp.obj, lamp.obj, west/lamp.obj, lone.obj"
 result $? "and by the folders of these, where they have one name" "$(meta twins.png inputs)"
+cat >names.osm <<'OSM'
+<osm version="0.6"><node id="1" lat="52.5" lon="13.4"/><node id="2" lat="52.5" lon="13.401"/>
+<node id="3" lat="52.50003" lon="13.4002"><tag k="highway" v="street_lamp"/></node>
+<way id="4"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/>
+<tag k="name" v="=A(&quot;,&quot;)"/></way></osm>
+OSM
+run influence names.osm --map-surfaces -q --sky 0 --time 0.1 --region pixel:640,500 --csv names.csv
+test $status = 0 && grep -qF ",\"'=A(\"\",\"\")\"," names.csv
+result $? "names of files are no formulas in a CSV" "$(sed -n 2p names.csv)"
 finish

@@ -48,6 +48,32 @@ test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-lit|city-see
     grep -q '^tonemap: '
 result $? "a real city's picture has no option of built-in scenes"
 
+# a photograph of 400 x 300 pixels from 0,-100,50 towards 0,0,10, by a lens of 50 degrees
+python3 -c '
+import math
+t = math.tan(math.radians(25))
+d = math.hypot(100, 40)
+print("# of a hand\n400,300\npx,py,x,y,z")
+for x, y, z in (-30, -10, 0), (28, -5, 2), (-20, 30, 25), (25, 35, 20), (0, 10, 5), (10, -20, 12):
+    along = ((y + 100) * 100 - (z - 50) * 40) / d
+    up = ((y + 100) * 40 + (z - 50) * 100) / d
+    print("%.9g,%.9g,%g,%g,%g" % (200 + 150 * x / along / t, 150 - 150 * up / along / t, x, y, z))' >photo.csv
+run render $small --method headlight --photo-points photo.csv -o p.png
+test $status = 0 && grep -q 'photograph: 6 points, 0.0 of its pixels off' err && meta p.png | python3 -c '
+import sys
+meta = dict(line.rstrip("\n").split(": ", 1) for line in sys.stdin if ": " in line)
+eye = [float(x) for x in meta["camera-eye"].split()]
+assert max(abs(a - b) for a, b in zip(eye, (0, -100, 50))) < 0.01, eye
+assert abs(float(meta["camera-fov"]) - 50) < 0.01 and meta["method"] == "headlight", meta'
+result $? "the camera of a photograph by its points" "$(cat err)"
+echo 1,2,3 >>photo.csv
+run render $small --photo-points photo.csv -o q.png
+test $status = 1 && grep -q 'photo.csv:10: a row is px,py,x,y,z' err
+result $? "a row that is none is told" "$(cat err)"
+run render $small --photo-points photo.csv --eye 1,2,3 --target 0,0,0 -o q.png
+test $status = 2 && grep -q 'exclude each other' err; result $? "a photograph and an eye are two cameras"
+rm photo.csv p.png
+
 run render $small -o a.exr
 test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr &&
     grep -aq 'candidates' a.exr
@@ -144,6 +170,15 @@ test $status = 0 && grep -aq units lights.exr && grep -aq 'candidates' lights.ex
 result $? "EXR takes a view's numbers and their unit"
 run render $small --candidates influence --show lights --show-range 0,7 -o b.png
 test $status = 0 && ! cmp -s lights.png b.png; result $? "--show-range sets the colour bar"
+run render $small --show illuminance --show-range 1,100 -o lux.png
+run render $small --show illuminance --show-range 1,100 --isolines 2,5,20 -o b.png
+test $status = 0 && ! cmp -s lux.png b.png; result $? "--isolines draws lines"
+run render $small --show illuminance --show-range 1,100 --show-scale linear -o b.png
+test $status = 0 && ! cmp -s lux.png b.png; result $? "--show-scale sets the bar"
+run render $small --show influential -o who.png
+test $status = 0 && grep -Eq '^ +[0-9]+ [a-z]+ [0-9]+ [0-9.]+%' out &&
+    meta who.png labels | grep -Eq '^[0-9]+ [a-z]+ [0-9]+ #'
+result $? "--show influential names lights"
 run render $small --show picture -o b.png
 test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
 

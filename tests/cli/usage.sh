@@ -73,6 +73,13 @@ expect "a view of no reservoir" 2 'view "weight": the reference method' render $
 expect "variance of nothing" 2 'frames must be accumulated' render $c -o a.png --show variance --no-accumulate
 expect "variance of one frame" 2 '--show error needs two frames' render $c -o a.png --show error --frames 1
 expect "a bar without a view" 2 '--show-range is for views' render $c -o a.png --show-range 0,1
+expect "lines without a view" 2 '--isolines is for views' render $c -o a.png --isolines 5
+expect "lines among names" 2 '--isolines is for views' render $c -o a.png --show class --isolines 5
+expect "a scale without a view" 2 '--show-scale is for views' render $c -o a.png --show-scale log
+expect "a logarithmic bar from 0" 2 'begins above 0' render $c -o a.png --show illuminance --show-range 0,9
+for v in 0 33 2.5 -1 x , 1,1 2,1 0,1 1,,2 1,nan; do
+    expect "isolines $v" 2 '--isolines: ".*" is neither' render $c -o a.png --show illuminance --isolines="$v"
+done
 expect "a bar of names" 2 '--show-range is for views' render $c -o a.png --show light --show-range 0,1
 for v in 1 1,1 2,1 -1,1 a,b 1,2,3 nan,1 0,inf; do
     expect "a bar of $v" 2 '--show-range: ".*" is not LOW,HIGH' render $c -o a.png --show lights --show-range=$v
@@ -125,7 +132,7 @@ for cmd in render info compare; do
     test $status = 0 && cmp -s out first; result $? "$cmd --help is the same"
     run $cmd -h
     test $status = 0 && cmp -s out first; result $? "$cmd -h is the same"
-    test "$(wc -l <first)" -le 240 && ! grep -Eq '^.{81}' first && ! grep -q ' $' first
+    test "$(wc -l <first)" -le 260 && ! grep -Eq '^.{81}' first && ! grep -q ' $' first
     result $? "help $cmd fits four screens of 80 columns"
 done
 if [ -e /dev/full ]; then

@@ -4,6 +4,7 @@
 #define DIALECT_FRAME_H
 
 #include "core/combine.h"
+#include "core/headlight.h"
 #include "core/hit.h"
 #include "core/moments.h"
 #include "core/neighbours.h"
@@ -215,6 +216,7 @@ FN void environments(CTX u32 item, u32 key, surf s) {
     put_v3(PASS item, FRAME_FIRST + 112, sky_shade(PASS s, ray.d, K(1.0f) / to_real(turns)));
     put_v3(PASS item, FRAME_FIRST + 115,
            sky_behind(PASS shr(rng_bits(key, KU(4600u)), 22), shr(rng_bits(key, KU(4601u)), 23)));
+    put_v3(PASS item, FRAME_FIRST + 118, headlight_shade(s, rng(key, KU(4820u)) * K(900.0f), K(FRAME.sky)));
     dialect_frame.flags = FRAME_BIAS_RAYS | FRAME_EMITTERS;
 }
 

@@ -123,6 +123,7 @@ static const struct {
     { FRAME_FIRST + 111, "sky_ray, map" },
     { FRAME_FIRST + 112, "sky_shade, map" },
     { FRAME_FIRST + 115, "sky_behind, map" },
+    { FRAME_FIRST + 118, "headlight_shade" },
     { INFLUENCE_FIRST, "influence_candidate" },
     { INFLUENCE_FIRST + 4, "influence_lists" },
     { INFLUENCE_FIRST + 5, "influence_near" },

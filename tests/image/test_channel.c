@@ -113,6 +113,138 @@ static void labels(void **state) {
     noc_channel_destroy(b);
 }
 
+/* The legend stands apart at the same pixels, and its numbers, and the colours, can be asked for. */
+static void parts(void **state) {
+    (void)state;
+    noc_channel *c = ramp(NOC_CHANNEL_LOG, 0.6f, 1);
+    static const noc_channel_part kinds[] = { NOC_CHANNEL_WHOLE, NOC_CHANNEL_PICTURE, NOC_CHANNEL_LEGEND };
+    shown s[3];
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ .part = kinds[i] }, &s[i].rgb, &s[i].width,
+                                              &s[i].height, NULL),
+                         NOC_OK);
+    assert_true(s[1].height == H && s[2].height == colorbar_height(1) && s[0].height == H + s[2].height);
+    assert_memory_equal(s[0].rgb, s[1].rgb, (size_t)3 * W * H);
+    assert_memory_equal(s[0].rgb + 3 * W * H, s[2].rgb, (size_t)3 * W * s[2].height);
+    noc_bar bar;
+    assert_int_equal(noc_channel_bar(c, NULL, &bar, NULL), NOC_OK);
+    assert_true(bar.logarithmic && bar.low == 1 && bar.high == 300 && bar.tick_count >= 3 && !bar.isoline_count);
+    for (int i = 0; i < bar.tick_count; i++)
+        assert_true(bar.ticks[i] >= 1 && bar.ticks[i] <= 300 && (!i || bar.ticks[i] > bar.ticks[i - 1]));
+    for (int i = 0; i < W; i += 7) {
+        uint8_t rgb[3];
+        noc_bar_colour(log(c->value[i] / bar.low) / log(bar.high / bar.low), rgb);
+        for (int k = 0; k < 3; k++)
+            assert_true(abs(rgb[k] - s[1].rgb[3 * i + k]) < 3);
+    }
+    for (int i = 0; i < 3; i++)
+        free(s[i].rgb);
+    shown wide;
+    assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ .part = NOC_CHANNEL_LEGEND, .legend_width = 700 },
+                                          &wide.rgb, &wide.width, &wide.height, NULL),
+                     NOC_OK);
+    assert_int_equal(wide.width, 700);
+    free(wide.rgb);
+    c->scale = NOC_CHANNEL_LABELS;
+    assert_int_equal(noc_channel_to_srgb8(c, NULL, &wide.rgb, &wide.width, &wide.height, NULL), NOC_OK);
+    for (int i = 0; i < W; i++) {
+        uint8_t rgb[3];
+        noc_label_colour(i % 2 ? c : NULL, (uint32_t)c->value[i], rgb);
+        assert_true(is(&wide, i, rgb));
+    }
+    free(wide.rgb);
+    noc_channel_destroy(c);
+}
+
+/* A scale that is not the channel's. */
+static void other_scales(void **state) {
+    (void)state;
+    noc_channel *lin = ramp(NOC_CHANNEL_LINEAR, 1, 1), *log_ = ramp(NOC_CHANNEL_LOG, 1, 1);
+    for (int i = 0; i < 2; i++) {
+        shown a, b;
+        noc_channel *from = i ? lin : log_;
+        assert_int_equal(noc_channel_to_srgb8(from, &(noc_channel_params){ .scale = i ? NOC_BAR_LOG : NOC_BAR_LINEAR },
+                                              &a.rgb, &a.width, &a.height, NULL),
+                         NOC_OK);
+        assert_int_equal(noc_channel_to_srgb8(i ? log_ : lin, NULL, &b.rgb, &b.width, &b.height, NULL), NOC_OK);
+        assert_memory_equal(a.rgb, b.rgb, (size_t)3 * a.width * a.height);
+        free(a.rgb);
+        free(b.rgb);
+    }
+    noc_channel_destroy(lin);
+    noc_channel_destroy(log_);
+}
+
+/* Lines lie where numbers pass their values, through noise too, and not at steps; the legend's bar is wide enough. */
+static void isolines(void **state) {
+    (void)state;
+    enum { SIDE = 260 };
+    noc_channel *c = noc_channel_create(SIDE, SIDE, 1, NULL);
+    assert_non_null(c);
+    c->name = c->title = "slope";
+    static const double lines[] = { 20, 40, 400 };
+    uint32_t h = 1;
+    for (int i = 0; i < SIDE * SIDE; i++) { /* 0.25 a pixel to the right, and a step of 100 below the middle */
+        h = h * 1664525u + 1013904223u;
+        c->value[i] = 0.25f * (float)(i % SIDE) + (i / SIDE < SIDE / 2 ? 0 : 100) + 0.05f * (float)(h >> 24) / 255;
+    }
+    noc_channel_params p = { .isolines = lines, .isoline_count = 3, .part = NOC_CHANNEL_PICTURE };
+    uint8_t *rgb[2];
+    int width, height;
+    assert_int_equal(noc_channel_to_srgb8(c, &p, &rgb[0], &width, &height, NULL), NOC_OK);
+    noc_bar bar;
+    assert_int_equal(noc_channel_bar(c, &p, &bar, NULL), NOC_OK);
+    assert_true(bar.high >= 400 && bar.isoline_count == 3 && bar.isolines[2] == 400);
+    p = (noc_channel_params){ bar.low, bar.high, .part = NOC_CHANNEL_PICTURE };
+    assert_int_equal(noc_channel_to_srgb8(c, &p, &rgb[1], &width, &height, NULL), NOC_OK);
+    int at[2] = { 0 }, lower = 0, stray = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int x = i % SIDE, y = i / SIDE;
+        if (!memcmp(rgb[0] + 3 * i, rgb[1] + 3 * i, 3))
+            continue;
+        if (y > SIDE / 2 + 8)
+            lower++;
+        else if (abs(x - 80) <= 2)
+            at[0]++;
+        else if (abs(x - 160) <= 2)
+            at[1]++;
+        else
+            stray++;
+    }
+    assert_true(at[0] > SIDE / 2 - 20 && at[1] > SIDE / 2 - 20);
+    assert_int_equal(lower, 0);
+    assert_true(stray < 400); /* the two values that are written beside them */
+    free(rgb[0]);
+    free(rgb[1]);
+    assert_int_equal(noc_channel_bar(c, &(noc_channel_params){ .round_isolines = 5 }, &bar, NULL), NOC_OK);
+    assert_true(bar.isoline_count >= 2 && bar.isoline_count <= 5 && bar.isolines[0] > 0);
+    noc_channel_destroy(c);
+}
+
+/* Names of some labels alone: those stand in the legend, in the colour that they would have without. */
+static void names_of_some(void **state) {
+    (void)state;
+    static const char *const names[] = { "lamp 7", "lamp 200", "not seen" };
+    static const uint32_t numbers[] = { 7, 200, 5000 };
+    noc_channel *c = ramp(NOC_CHANNEL_LABELS, 0, 1);
+    shown plain, named;
+    assert_int_equal(noc_channel_to_srgb8(c, NULL, &plain.rgb, &plain.width, &plain.height, NULL), NOC_OK);
+    c->labels = names;
+    c->label_numbers = numbers;
+    c->label_count = 3;
+    assert_int_equal(noc_channel_to_srgb8(c, NULL, &named.rgb, &named.width, &named.height, NULL), NOC_OK);
+    assert_memory_equal(plain.rgb, named.rgb, (size_t)3 * W * H);
+    for (int i = 0; i < W; i++) {
+        bool there = false;
+        for (int k = W * H; k < named.width * named.height; k++)
+            there |= is(&named, k, named.rgb + 3 * i);
+        assert_int_equal(there, i == 7 || i == 200);
+    }
+    free(plain.rgb);
+    free(named.rgb);
+    noc_channel_destroy(c);
+}
+
 static bool has_colour(const shown *s, int from_row, const uint8_t rgb[3]) {
     for (int i = from_row * s->width; i < s->height * s->width; i++)
         if (is(s, i, rgb))
@@ -200,6 +332,13 @@ static void what_cannot_be(void **state) {
     noc_log *log = quiet();
     noc_channel *c = ramp(NOC_CHANNEL_LOG, 1, 1);
     static const noc_channel_params wrong[] = { { 2, 1 }, { 0, 1 }, { -1, 1 }, { 1, INFINITY }, { NAN, 1 } };
+    static const double falling[] = { 2, 1 }, zero[] = { 0 };
+    static const noc_channel_params no_lines[] = { { .isolines = falling, .isoline_count = 2 },
+                                                   { .isolines = zero, .isoline_count = 1 },
+                                                   { .isolines = falling, .isoline_count = -1 },
+                                                   { .isolines = falling, .isoline_count = NOC_ISOLINES + 1 },
+                                                   { .round_isolines = -1 },
+                                                   { .round_isolines = NOC_ISOLINES + 1 } };
     for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
         uint8_t *rgb = NULL;
         int width, height;
@@ -207,6 +346,14 @@ static void what_cannot_be(void **state) {
         assert_null(rgb);
         assert_non_null(strstr(noc_log_last_error(log), "cannot be drawn"));
     }
+    noc_bar bar;
+    for (size_t i = 0; i < NOC_COUNT(no_lines); i++) {
+        assert_int_equal(noc_channel_bar(c, &no_lines[i], &bar, log), NOC_ERR_ARGUMENT);
+        assert_non_null(strstr(noc_log_last_error(log), "isolines are"));
+    }
+    c->scale = NOC_CHANNEL_LABELS;
+    assert_int_equal(noc_channel_bar(c, NULL, &bar, log), NOC_ERR_ARGUMENT);
+    c->scale = NOC_CHANNEL_LOG;
     assert_int_equal(noc_channel_write(c, "/tmp/a.tiff", NULL, NULL, log), NOC_ERR_UNSUPPORTED);
     assert_int_equal(noc_channel_write(c, "/nowhere/a.exr", NULL, NULL, log), NOC_ERR_IO);
     assert_int_equal(noc_channel_write(c, "/nowhere/a.png", NULL, NULL, log), NOC_ERR_IO);
@@ -225,6 +372,10 @@ int main(void) {
         cmocka_unit_test(any_numbers),
         cmocka_unit_test(labels),
         cmocka_unit_test(labels_with_names),
+        cmocka_unit_test(names_of_some),
+        cmocka_unit_test(parts),
+        cmocka_unit_test(other_scales),
+        cmocka_unit_test(isolines),
         cmocka_unit_test(files),
         cmocka_unit_test(what_cannot_be),
     };

@@ -116,6 +116,30 @@ static void test_gpx(void **state) {
 }
 
 /* A car that is taken away is not moved any more. */
+/* Out of sight they are small, dark and under the ground; they drive on, and come back as they would be now. */
+static void test_hidden(void **state) {
+    char keys[3][NOC_CONTENT_KEY];
+    noc_light_info light;
+    load_well(gpx);
+    at(0, 30);
+    noc_scene_content(scene, keys[0]);
+    at(0, 5);
+    assert_int_equal(noc_scene_show_cars(scene, false), NOC_OK);
+    const float *m = at(0, 30);
+    assert_true(fabs(hypot(m[0], m[4]) - .001) < 1e-4);
+    assert_true(fabs(m[11] - (SLOPE * m[3] - 2)) < .05);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(noc_scene_get_light(scene, (size_t)noc_scene_instance_light(scene, 0, i), &light), NOC_OK);
+        assert_true(light.lumens == 0);
+    }
+    noc_scene_content(scene, keys[1]);
+    assert_string_not_equal(keys[0], keys[1]);
+    assert_int_equal(noc_scene_show_cars(scene, true), NOC_OK);
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    noc_scene_content(scene, keys[2]);
+    assert_string_equal(keys[0], keys[2]);
+}
+
 static void test_removed(void **state) {
     load_well(gpx);
     assert_int_equal(noc_scene_remove_instance(scene, 0), NOC_OK);
@@ -334,6 +358,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gpx),
         cmocka_unit_test(test_removed),
+        cmocka_unit_test(test_hidden),
         cmocka_unit_test(test_points),
         cmocka_unit_test(test_skipped),
         cmocka_unit_test(test_times),

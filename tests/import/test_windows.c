@@ -15,13 +15,16 @@
     "polygon 2 678000 5404000 388 678040 5404000 388 678040 5404020 388 678000 5404020 388\nend\n"
 #define LAMP "FAKE lamps\ncrs EPSG:25832\nlamp 678020 5403990\n"
 
-static void load(struct run *r, const char *city, double lit, double hour) {
+static void load_seeded(struct run *r, const char *city, double lit, double hour, uint32_t seed) {
     noc_import_params p = noc_import_default_params();
     p.window.lit_windows = lit;
     p.window.hour = hour;
+    p.window.seed = seed;
     LOAD(r, p, file("a", city), file("l", LAMP));
     assert_int_equal(r->status, NOC_OK);
 }
+
+static void load(struct run *r, const char *city, double lit, double hour) { load_seeded(r, city, lit, hour, 1); }
 
 static bool is_lit(const noc_scene *s, size_t i) {
     const float *e = s->lights.data[s->windows.data[i].light].e;
@@ -123,6 +126,38 @@ static void test_ratio(void **state) {
         finish(&r[i]);
 }
 
+/* Another seed lights others, as many, as a load with it does, and the first seed the first ones. */
+static void test_seed(void **state) {
+    (void)state;
+    struct run a, b;
+    char keys[4][NOC_CONTENT_KEY];
+    load(&a, BLOCK("0", "1"), .4, 21);
+    load_seeded(&b, BLOCK("0", "1"), .4, 21, 7);
+    noc_scene_content(a.scene, keys[0]);
+    noc_scene_content(b.scene, keys[1]);
+    noc_report_totals t;
+    noc_report_get_totals(b.report, &t);
+    assert_int_equal(t.windows.lit, b.info.windows_lit);
+    noc_window_params p = { .lit_windows = .4, .hour = 21, .seed = 7 };
+    size_t differ = 0;
+    for (size_t i = 0; i < a.info.windows; i++)
+        differ += is_lit(a.scene, i) != is_lit(b.scene, i);
+    assert_true(differ > a.info.windows / 4); /* 2 x .4 x .6 where the draws are independent */
+    assert_true(fabs((double)b.info.windows_lit / 288 - .4) < .1);
+    assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_OK);
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    noc_scene_content(a.scene, keys[2]);
+    p.seed = 1;
+    assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_OK);
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    noc_scene_content(a.scene, keys[3]);
+    assert_string_not_equal(keys[0], keys[1]);
+    assert_string_equal(keys[1], keys[2]);
+    assert_string_equal(keys[0], keys[3]);
+    finish(&a);
+    finish(&b);
+}
+
 /* A switched scene is the one that was loaded so: the same name for all that pictures depend on. */
 static void test_switched(void **state) {
     (void)state;
@@ -133,11 +168,12 @@ static void test_switched(void **state) {
     noc_scene_content(a.scene, keys[0]);
     noc_scene_content(b.scene, keys[1]);
     assert_string_not_equal(keys[0], keys[1]);
-    noc_window_params p = { .lit_windows = .6, .hour = 23.5 };
+    noc_window_params p = { .lit_windows = .6, .hour = 23.5, .seed = 1 };
     noc_scene_versions before = a.scene->versions;
     assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_OK);
     noc_scene_content(a.scene, keys[2]);
     assert_string_equal(keys[0], keys[2]); /* staged */
+
     assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
     noc_scene_content(a.scene, keys[2]);
     assert_string_equal(keys[1], keys[2]);
@@ -358,7 +394,7 @@ int main(void) {
         cmocka_unit_test(test_made),       cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
         cmocka_unit_test(test_switched),   cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
         cmocka_unit_test(test_no_memory),  cmocka_unit_test(test_threads), cmocka_unit_test(test_progress),
-        cmocka_unit_test(test_same_views),
+        cmocka_unit_test(test_same_views), cmocka_unit_test(test_seed),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -430,6 +430,60 @@ static void test_memory_refused(void **state) {
     noc_log_destroy(log);
 }
 
+/* What is written is read back, tests/viewer holds; here what cannot be. */
+static void test_writing_refused(void **state) {
+    const noc_recipe_camera camera = { "a", noc_camera_default_params() };
+    const noc_path_key key = noc_path_key_default();
+    const noc_recipe_path way = { "b", true, 1, &key };
+    const noc_material wall = noc_class_material(NOC_CLASS_WALL);
+    const noc_named_material named = { "c", { -1, -1, -1 }, -1, .3f, -1 };
+    const noc_condition condition = { "source", "LED" };
+    noc_luminaire_rule rule = noc_luminaire_default_rule();
+    noc_group_rule group = noc_group_default_rule();
+    const char *const inputs[] = { "builtin:city" }, *const texts[] = { "on" };
+    const noc_recipe_value value = { noc_import_options(), texts, 1 };
+    noc_recipe_info info = { .name = "n",
+                             .inputs = inputs,
+                             .input_count = 1,
+                             .cameras = &camera,
+                             .camera_count = 1,
+                             .paths = &way,
+                             .path_count = 1,
+                             .materials = &wall,
+                             .material_count = 1,
+                             .named_materials = &named,
+                             .named_material_count = 1,
+                             .luminaires = &rule,
+                             .luminaire_count = 1,
+                             .groups = &group,
+                             .group_count = 1,
+                             .has_preset = true };
+    rule.conditions = &condition;
+    rule.condition_count = 1;
+    rule.profile = "a.ies";
+    rule.profile_base = "folder/";
+    group.name = "g";
+    noc_log *log = counting_log();
+    char *text;
+    bool reached;
+    FOR_EACH_REFUSAL(reached) {
+        begin_refusal(n, later);
+        noc_status status = noc_recipe_write(&info, &value, 1, log, &text);
+        reached = end_refusal();
+        if (status)
+            assert_refused(status, "a recipe that is written");
+        assert_true(!text == (status != NOC_OK));
+        if (text)
+            assert_non_null(strstr(text, "profile: \"folder/a.ies\""));
+        free(text);
+    }
+    info.name = "\xff";
+    assert_int_equal(noc_recipe_write(&info, &value, 1, log, &text), NOC_ERR_FORMAT);
+    assert_null(text);
+    assert_non_null(strstr(noc_log_last_error(log), "UTF-8"));
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_that_it_says),
@@ -441,6 +495,7 @@ int main(void) {
         cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
         cmocka_unit_test(test_a_bomb_is_an_error_at_once),
         cmocka_unit_test(test_memory_refused),
+        cmocka_unit_test(test_writing_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -21,6 +21,7 @@ static const struct {
     { "influence-cluster", "16" },
     { "uniform-every", "2" },
     { "rays", "3" },
+    { "final-ray", "false" },
     { "temporal", "false" },
     { "spatial", "false" },
     { "neighbours", "2" },

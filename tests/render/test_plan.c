@@ -6,7 +6,7 @@
 /* Calls back with every combination of what decides a plan. */
 static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history, bool map)) {
     int count = 0;
-    for (int method = 0; method <= NOC_METHOD_RESTIR; method++)
+    for (int method = 0; method < NOC_METHOD_COUNT; method++)
         for (int from = 0; from < NOC_CANDIDATES_COUNT; from++)
             for (int bias = 0; bias <= NOC_BIAS_PAIRWISE; bias++)
                 for (int bits = 0; bits < 64; bits++)
@@ -100,7 +100,7 @@ static void check_stages(const noc_render_params *p, const noc_plan *plan, int h
 
 static void stages_may_run_tile_by_tile(void **state) {
     (void)state;
-    assert_int_equal(each_plan(check_stages), 4 * NOC_CANDIDATES_COUNT * 3 * 64 * 4 * 4);
+    assert_int_equal(each_plan(check_stages), NOC_METHOD_COUNT * NOC_CANDIDATES_COUNT * 3 * 64 * 4 * 4);
 }
 
 static void check_shading(const noc_render_params *p, const noc_plan *plan, int history, bool map) {
@@ -109,14 +109,14 @@ static void check_shading(const noc_render_params *p, const noc_plan *plan, int 
     for (int i = 0; i < plan->count; i++)
         for (int k = 0; k < plan->stages[i].count; k++) {
             noc_pass pass = plan->stages[i].passes[k];
-            shades += pass == NOC_PASS_SHADE || pass == NOC_PASS_SHADE_ALL ||
+            shades += pass == NOC_PASS_SHADE || pass == NOC_PASS_SHADE_ALL || pass == NOC_PASS_HEADLIGHT ||
                       (pass == NOC_PASS_SHADE_SHARED && p->method != NOC_METHOD_RESTIR);
             skies += pass == NOC_PASS_SKY;
             if (noc_passes[pass].others && pass == NOC_PASS_SPATIAL)
                 assert_int_equal(p->method, NOC_METHOD_RESTIR);
         }
     assert_int_equal(shades, 1);
-    assert_int_equal(skies, p->sky > 0 || map);
+    assert_int_equal(skies, (p->sky > 0 || map) && p->method != NOC_METHOD_HEADLIGHT);
 }
 
 static void light_is_shaded_once(void **state) {

@@ -19,7 +19,8 @@ static noc_render_params any(int i) {
     if (p.method == NOC_METHOD_IS || p.method == NOC_METHOD_REFERENCE || i % 4 > 1)
         p.aovs &= ~(1u << NOC_AOV_LIGHTS);
     if (p.method == NOC_METHOD_REFERENCE)
-        p.aovs &= 1u << NOC_AOV_RAYS | MOMENTS | 1u << NOC_AOV_GROUP | 1u << NOC_AOV_PLACED;
+        p.aovs &= 1u << NOC_AOV_RAYS | MOMENTS | 1u << NOC_AOV_GROUP | 1u << NOC_AOV_PLACED | 1u << NOC_AOV_LUMINANCE |
+                  1u << NOC_AOV_ILLUMINANCE | 15u << NOC_AOV_INFLUENTIAL;
     return p;
 }
 enum { KINDS = 8 };

@@ -14,11 +14,12 @@ typedef struct {
     size_t n;
 } moments;
 
-static inline void add_picture(moments *m, const noc_image *image) {
+/* rgb: three a pixel, whose luminance counts; else one, below 0 where there is none. */
+static inline void add_values(moments *m, const float *value, bool rgb) {
     double tile[TILES + 1] = { 0 };
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
-            double v = luma(image->rgb + 3 * (y * W + x));
+            double v = rgb ? luma(value + 3 * (y * W + x)) : fmax(value[y * W + x], 0);
             tile[y / TILE * (W / TILE) + x / TILE] += v / (TILE * TILE);
             tile[TILES] += v / (W * H);
         }
@@ -27,6 +28,20 @@ static inline void add_picture(moments *m, const noc_image *image) {
         m->square[t] += tile[t] * tile[t];
     }
     m->n++;
+}
+
+static inline void add_picture(moments *m, noc_view *r) {
+    noc_image *image = noc_view_image(r);
+    add_values(m, image->rgb, true);
+    noc_image_destroy(image);
+}
+
+/* What the surfaces are lit with, in the picture's place. */
+static inline void add_illuminance(moments *m, noc_view *r) {
+    noc_channel *lux = noc_view_aov(r, NOC_AOV_ILLUMINANCE);
+    assert_non_null(lux);
+    add_values(m, lux->value, false);
+    noc_channel_destroy(lux);
 }
 
 static inline double mean_of(const moments *m, int t) { return m->sum[t] / (double)m->n; }
@@ -56,6 +71,7 @@ typedef struct config {
     int times;        /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
     int shadow_rays;  /* ris with lists; 0: the default */
     bool unlearned;
+    bool lux; /* of the illuminance */
 } config;
 
 static inline noc_render_params params_of(const config *c, uint32_t seed) {
@@ -71,6 +87,7 @@ static inline noc_render_params params_of(const config *c, uint32_t seed) {
     p.learn = !c->unlearned;
     p.tail = c->list ? c->list : 1;
     p.accumulate = false;
+    p.aovs = c->lux ? 1u << NOC_AOV_ILLUMINANCE : 0;
     p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
     p.bias = c->bias;
     p.temporal = c->temporal;
@@ -114,9 +131,7 @@ static inline result measure_runs(noc_scene *s, const config *c, bool moving, po
             assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
             if (f != check_at[at])
                 continue;
-            noc_image *image = noc_view_image(r);
-            add_picture(&out.at[at++], image);
-            noc_image_destroy(image);
+            (c->lux ? add_illuminance : add_picture)(&out.at[at++], r);
         }
     }
     noc_frame_stats stats;
@@ -126,10 +141,10 @@ static inline result measure_runs(noc_scene *s, const config *c, bool moving, po
     return out;
 }
 
-static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, int frames) {
+static inline result measure_reference_of(noc_scene *s, bool moving, pose_fn pose, int frames, bool lux) {
     result out = { 0 };
     noc_view *r = own_view(s, 2, NULL);
-    config c = { .method = NOC_METHOD_REFERENCE };
+    config c = { .method = NOC_METHOD_REFERENCE, .lux = lux };
     noc_render_params p = params_of(&c, 99);
     p.rays = 32;
     for (int at = 0; at < CHECKS; at++) {
@@ -142,13 +157,15 @@ static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, 
             pose(s, check_at[at]);
         for (int f = 0; f < samples(frames); f++) {
             assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
-            noc_image *image = noc_view_image(r);
-            add_picture(&out.at[at], image);
-            noc_image_destroy(image);
+            (lux ? add_illuminance : add_picture)(&out.at[at], r);
         }
     }
     close_view(r);
     return out;
+}
+
+static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, int frames) {
+    return measure_reference_of(s, moving, pose, frames, false);
 }
 
 /* Largest distance in standard errors over tiles, picture and checked frames. Of few samples the errors say nothing. */

@@ -34,7 +34,7 @@ static inline noc_channel *view(noc_view *r, noc_aov aov) {
     noc_channel *v = noc_view_aov(r, aov);
     assert_non_null(v);
     assert_string_equal(v->name, noc_aov_name(aov));
-    assert_int_equal(v->components, aov == NOC_AOV_NORMAL ? 3 : 1);
+    assert_int_equal(v->components, aov == NOC_AOV_NORMAL || aov == NOC_AOV_MOTION ? 3 : 1);
     for (size_t i = 0; v->components == 1 && i < (size_t)v->width * v->height; i++)
         assert_true(isfinite(v->value[i]) && (v->value[i] >= 0 || v->value[i] == -1));
     return v;

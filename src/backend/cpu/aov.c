@@ -1,6 +1,7 @@
 /* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is
  * reached unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
 #include "backend/cpu/cpu.h"
+#include "core/camera.h"
 #include "core/moments.h"
 
 #include <math.h>
@@ -8,24 +9,44 @@
 #define BIT(aov) (1u << NOC_AOV_##aov)
 enum {
     /* by the passes, so a dropped frame must not touch what is kept */
-    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS) | BIT(GROUP) | BIT(PLACED),
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS) | BIT(GROUP) | BIT(PLACED) |
+               BIT(ILLUMINANCE) | BIT(INFLUENTIAL),
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
-    SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT), /* what is seen: emitters too */
-    SOURCES = BIT(GROUP) | BIT(PLACED),                             /* sums over frames: sources.c */
+    /* what is seen: emitters too */
+    SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT) | BIT(MOTION),
+    EMITTERS =
+        BIT(INFLUENTIAL) | BIT(INFLUENTIAL_SHARE) | BIT(RUNNER_UP) | BIT(RUNNER_UP_SHARE), /* kept[INFLUENTIAL] */
+    SUMS = BIT(GROUP) | BIT(PLACED) | BIT(ILLUMINANCE) | EMITTERS,                         /* over frames: sources.c */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
 };
 
 /* Buffers that these views take. */
-static uint32_t buffers_of(uint32_t aovs) { return aovs & MOMENTS ? aovs | MOMENTS : aovs; }
+static uint32_t buffers_of(uint32_t aovs) {
+    return aovs | (aovs & MOMENTS ? MOMENTS : 0) | (aovs & EMITTERS ? BIT(INFLUENTIAL) : 0);
+}
 
-/* Entries of a block: a vector's components one after the other. */
-static size_t components(int aov) { return aov == NOC_AOV_NORMAL ? 3 : SOURCES >> aov & 1 ? 2 * SOURCE_PLACES : 1; }
+/* Entries of a block, of the frame being made and of those that are kept: a vector's components one after the other. */
+static size_t made_entries(int aov) {
+    if (!(GATHERED >> aov & 1))
+        return 0;
+    return NOC_MAX(noc_cpu_source_entries(aov), (size_t)1);
+}
+static size_t kept_entries(int aov) {
+    switch (aov) {
+    case NOC_AOV_INFLUENTIAL_SHARE:
+    case NOC_AOV_RUNNER_UP:
+    case NOC_AOV_RUNNER_UP_SHARE: return 0;
+    case NOC_AOV_LUMINANCE: return 0;   /* the picture has it */
+    case NOC_AOV_ILLUMINANCE: return 2; /* mean, frames */
+    default: return NOC_MAX(made_entries(aov), (size_t)noc_aov_components((noc_aov)aov));
+    }
+}
 
 size_t noc_cpu_aov_bytes(uint32_t aovs) {
     size_t floats = 0;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
         if (buffers_of(aovs) >> aov & 1)
-            floats += components(aov) * (GATHERED >> aov & 1 ? 2 : 1);
+            floats += made_entries(aov) + kept_entries(aov);
     return sizeof(float) * floats;
 }
 
@@ -45,33 +66,36 @@ static void drop_but(aov_buffers *v, uint32_t aovs) {
 
 void noc_cpu_free_aovs(aov_buffers *v) {
     drop_but(v, 0);
+    free(v->emitter_labels);
     *v = (aov_buffers){ 0 };
 }
 
 static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
-    return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
+    return !blocks || *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
 }
 
 noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs) {
     aov_buffers *v = &s->b.aovs;
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
+    if (aovs & EMITTERS && noc_cpu_label_emitters(s) != NOC_OK)
+        return NOC_ERR_MEMORY;
     v->asked = buffers_of(aovs);
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
-        bool gathered = GATHERED >> aov & 1;
         if (!(v->asked >> aov & 1)) {
             free(v->made[aov]);
             v->made[aov] = NULL;
-        } else if (!allocate(&v->kept[aov], components(aov) * blocks) ||
-                   (gathered && !allocate(&v->made[aov], components(aov) * blocks))) {
+        } else if (!allocate(&v->kept[aov], kept_entries(aov) * blocks) ||
+                   !allocate(&v->made[aov], made_entries(aov) * blocks)) {
             v->asked = v->held;
             drop_but(v, v->held);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
-        } else if (gathered) {
-            for (size_t i = 0; i < components(aov) * blocks; i++)
-                for (int l = 0; l < BLOCK; l++)
-                    v->made[aov][i][l] = aov == NOC_AOV_RAYS ? 0 : -1;
         }
+        for (size_t i = 0; v->made[aov] && i < made_entries(aov) * blocks; i++)
+            for (int l = 0; l < BLOCK; l++)
+                v->made[aov][i][l] = aov == NOC_AOV_RAYS ? 0 : -1;
     }
+    if (v->asked & BIT(ILLUMINANCE))
+        noc_cpu_find_light_colours(s);
     return NOC_OK;
 }
 
@@ -133,14 +157,37 @@ static void keep_surfaces(const noc_scene *scene, aov_buffers *v, size_t block, 
     }
 }
 
+static float luminance_of(const cblock *c, int l) { return luminance(V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l])); }
+
 static void add_moments(aov_buffers *v, size_t block, const cblock *c) {
     float *mean = v->kept[NOC_AOV_ERROR][block], *squares = v->kept[NOC_AOV_VARIANCE][block];
     for (int l = 0; l < BLOCK; l++) {
-        float y = luminance(V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l]));
+        float y = luminance_of(c, l);
         moments m = v->frames ? (moments){ mean[l], squares[l] } : moments_none();
         m = moments_add(m, y, (float)(v->frames + 1));
         mean[l] = m.mean;
         squares[l] = m.squares;
+    }
+}
+
+/* Before the view's buffers, and what it has seen of the scene, are handed on. */
+static void keep_motion(const cpu_view *s, const noc_frame *frame, size_t block, const gblock *g) {
+    gblock room;
+    const gblock *then = noc_cpu_taken_back(s, block, g, &room);
+    uint32_t known = noc_cpu_known_before(s, block);
+    camera now = camera_of(frame->constants.camera), past = camera_of(frame->constants.previous);
+    for (int l = 0; l < BLOCK; l++) {
+        v3 motion = V3(0, 0, 0);
+        if (frame->seen_before && known >> l & 1 && g->material[l] != NO_SURFACE) {
+            v3 to = camera_project(past, V3(then->px[l], then->py[l], then->pz[l]));
+            v3 from = camera_project(now, V3(g->px[l], g->py[l], g->pz[l]));
+            if (to.z > 0)
+                motion = V3(to.x - from.x, to.y - from.y, to.z);
+        }
+        float(*kept)[BLOCK] = &s->b.aovs.kept[NOC_AOV_MOTION][3 * block];
+        kept[0][l] = motion.x;
+        kept[1][l] = motion.y;
+        kept[2][l] = motion.z;
     }
 }
 
@@ -162,12 +209,14 @@ static void keep_row(void *arg, size_t row, int index) {
             keep_reservoirs(v, i, &b->r[run->s->shaded_set][i]);
         if (v->asked & SURFACES)
             keep_surfaces(run->s->scene, v, i, g);
+        if (v->asked & BIT(MOTION))
+            keep_motion(run->s, run->frame, i, g);
         if (v->asked & MOMENTS)
             add_moments(v, i, &b->colour[i]);
-        if (v->asked & SOURCES)
+        if (v->asked & SUMS)
             noc_cpu_keep_sources(v, i, run->fresh);
         for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
-            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS | SURFACES | SOURCES) >> aov)))
+            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | BIT(LUMINANCE) | MOMENTS | SURFACES | SUMS) >> aov)))
                 continue;
             for (int l = 0; l < BLOCK; l++)
                 if (g->material[l] == NO_SURFACE || g->light[l] != NOC_NO_LIGHT)
@@ -182,7 +231,7 @@ void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame) {
     if (!v->asked)
         return;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
-        if (v->asked & GATHERED & ~SOURCES & 1u << aov) {
+        if (v->asked & GATHERED & ~SUMS & 1u << aov) {
             float(*kept)[BLOCK] = v->kept[aov];
             v->kept[aov] = v->made[aov];
             v->made[aov] = kept;
@@ -207,13 +256,17 @@ bool noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
             size_t at = (size_t)(y / BLOCK_SIDE) * (size_t)b->blocks_x + (size_t)(x / BLOCK_SIDE);
             int l = (y & 3) * 4 + (x & 3);
             size_t to = (size_t)y * (size_t)b->width + (size_t)x;
-            if (aov == NOC_AOV_NORMAL) {
+            if (noc_aov_components(aov) == 3) {
                 for (size_t k = 0; k < 3; k++)
                     value[3 * to + k] = v->kept[aov][3 * at + k][l];
                 continue;
             }
-            double out = SOURCES >> aov & 1 ? noc_cpu_main_source(&v->kept[aov][2 * SOURCE_PLACES * at], l)
-                                            : v->kept[aov][at][l];
+            double out = aov == NOC_AOV_LUMINANCE     ? luminance_of(&b->picture[at], l)
+                         : aov == NOC_AOV_ILLUMINANCE ? noc_cpu_mean_lux(v, at, l)
+                         : EMITTERS >> aov & 1        ? noc_cpu_emitter_view(v, aov, at, l)
+                         : aov == NOC_AOV_GROUP || aov == NOC_AOV_PLACED
+                             ? noc_cpu_main_source(&v->kept[aov][2 * SOURCE_PLACES * at], l)
+                             : v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
                 bool none = n < 2 || noc_cpu_saw_emitter(b, at, l) || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||

@@ -20,9 +20,14 @@ noc_status noc_cpu_stage(void *view, const noc_frame *frame, const noc_stage *st
 noc_status noc_cpu_accumulate(void *view, const noc_frame *frame);
 void noc_cpu_read(void *view, noc_image *image);
 bool noc_cpu_read_aov(void *view, noc_aov aov, float *value);
+void noc_cpu_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
+void noc_cpu_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
 void noc_cpu_stats(void *view, noc_frame_stats *stats);
 void noc_cpu_light_stats(void *view, noc_light_stats *stats);
 noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes);
+noc_status noc_cpu_cast(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
+noc_status noc_cpu_ask(void *view, const noc_render_params *params, bool tree, noc_asking *out);
+void noc_cpu_clear(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
 void noc_cpu_record(void *view, bool on);
 noc_status noc_cpu_replay(void *view, double *seconds);
 
@@ -31,8 +36,9 @@ noc_status noc_cpu_replay(void *view, double *seconds);
     .device_destroy = noc_cpu_device_destroy, .world_create = noc_cpu_world_create,                                    \
     .world_destroy = noc_cpu_world_destroy, .view_create = noc_cpu_view_create, .view_destroy = noc_cpu_view_destroy,  \
     .bytes_a_pixel = noc_cpu_bytes_a_pixel, .resize = noc_cpu_view_resize, .stage = noc_cpu_stage,                     \
-    .accumulate = noc_cpu_accumulate, .read = noc_cpu_read, .aov = noc_cpu_read_aov, .stats = noc_cpu_stats,           \
-    .light_stats = noc_cpu_light_stats, .influence = noc_cpu_influence, .record = noc_cpu_record,                      \
+    .accumulate = noc_cpu_accumulate, .read = noc_cpu_read, .aov = noc_cpu_read_aov, .rows = noc_cpu_rows,             \
+    .run = noc_cpu_run, .stats = noc_cpu_stats, .light_stats = noc_cpu_light_stats, .influence = noc_cpu_influence,    \
+    .cast = noc_cpu_cast, .ask = noc_cpu_ask, .clear = noc_cpu_clear, .record = noc_cpu_record,                        \
     .replay = noc_cpu_replay
 
 #endif

@@ -101,6 +101,15 @@ typedef struct aov_buffers {
     uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
     uint64_t frames;      /* in the moments of the luminance */
     int gbuffer;          /* of the last complete frame */
+    /* illuminance: bits of which of red, green and blue the lights have, bit n for n; of the scene after so many
+     * commits
+     */
+    uint32_t light_colours;
+    uint64_t coloured;
+    /* influential: of each light of the scene the first one of its emitter; of these versions of the scene */
+    float *emitter_labels;
+    size_t emitter_label_count;
+    uint64_t labelled[2];
 } aov_buffers;
 
 /* Sums over the frames of the mean, of those in which a lane saw an emitter: coverage.c. */
@@ -268,6 +277,8 @@ void noc_cpu_keep_past(cpu_view *s);
 struct core_context noc_cpu_previous(const cpu_view *s, const struct core_context *now, noc_ray_world *in);
 /* Takes surfaces that instances show back to where they were in the frame before; g itself where all stand. */
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved);
+/* Lanes of a block of which it is known where they were then: those of the world, and of instances that were there. */
+uint32_t noc_cpu_known_before(const cpu_view *s, size_t at);
 size_t noc_cpu_past_bytes(const cpu_view *s);
 size_t noc_cpu_light_bytes(const cpu_world *world);
 
@@ -310,17 +321,36 @@ void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t
 void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame); /* the frame is complete */
 
 /* sources.c */
-enum {
-    SOURCE_PLACES = 8
-}; /* labels of lights that a pixel has room for; with their sums they are twice as many arrays */
+/* Labels of lights that a pixel has room for; with their sums they are twice as many arrays. Behind those of emitters
+ * lies the sky's sum. */
+enum { SOURCE_PLACES = 8, EMITTER_PLACES = NOC_AOV_EMITTERS };
+static inline size_t noc_cpu_source_places(int aov) {
+    return aov == NOC_AOV_GROUP || aov == NOC_AOV_PLACED ? SOURCE_PLACES
+           : aov == NOC_AOV_INFLUENTIAL                  ? EMITTER_PLACES
+                                                         : 0;
+}
+static inline size_t noc_cpu_source_entries(int aov) {
+    return 2 * noc_cpu_source_places(aov) + (aov == NOC_AOV_INFLUENTIAL);
+}
 /* The samples' light goes into a block's colour, and into the views of where light comes from. Returns the lanes that
  * were dropped. */
 uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, uint32_t lanes, size_t block);
-/* Emitters that are seen: c is their luminance. */
+/* The same of the sky's rays, of which each is so much of its pixel's. */
+uint32_t noc_cpu_shade_sky(const stage_run *run, const gblock *g, const rayblock *rays, const float *share,
+                           uint32_t lanes, size_t block);
+/* Emitters that are seen: c is their luminance. Comes before the two. */
 void noc_cpu_note_emitters(const stage_run *run, const gblock *g, const cblock *c, size_t block);
+/* Before a frame that asks for illuminance. */
+void noc_cpu_find_light_colours(cpu_view *s);
 /* The frame is complete; fresh: bits of views whose sums begin with it. */
 void noc_cpu_keep_sources(aov_buffers *v, size_t block, uint32_t fresh);
-float noc_cpu_main_source(float (*place)[BLOCK], int lane); /* label of the most light; -1: there is none */
+float noc_cpu_mean_lux(const aov_buffers *v, size_t block, int lane); /* -1: no frame saw a surface */
+float noc_cpu_main_source(float (*place)[BLOCK], int lane);
+/* One of the four views of emitters. */
+float noc_cpu_emitter_view(const aov_buffers *v, noc_aov aov, size_t block, int lane);
+/* Before a frame that asks for one of them. */
+noc_status noc_cpu_label_emitters(cpu_view *s);
+/* label of the most light; -1: there is none */
 
 /* coverage.c: what emitters that are seen directly add to the mean */
 /* room for the frame, when its shading is done */

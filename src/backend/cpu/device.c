@@ -31,6 +31,10 @@ noc_status noc_cpu_device_create(const noc_tracer *tracer, const noc_device_para
     return NOC_OK;
 }
 
+void noc_cpu_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx) {
+    noc_pool_run(((cpu_device *)device)->pool, items, fn, ctx);
+}
+
 /* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded
  * to 2^-24 of theirs. It looks at what is new only, and stays as it is where something is removed. */
 static void find_ray_offset(cpu_world *w) {

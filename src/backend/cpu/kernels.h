@@ -231,6 +231,13 @@ typedef struct kernels {
                      rayblock *out);
     uint32_t (*sky_shade)(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
                           uint32_t lanes, cblock *out);
+    /* lux += what the samples, or the sky along those rays, light their surfaces with, for `lanes`; what is not finite
+     * is left out. lux: one a lane. */
+    void (*samples_lux)(const struct core_context *ctx, const gblock *g, const rblock *r, uint32_t lanes, float *lux);
+    void (*sky_lux)(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
+                    uint32_t lanes, float *lux);
+    /* rgb += what a lamp at the eye shows of the surfaces of `lanes`. */
+    void (*headlight)(const struct core_context *ctx, const gblock *g, uint32_t lanes, cblock *out);
     void (*sky_background)(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out);
 } kernels;
 

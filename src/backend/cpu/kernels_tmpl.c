@@ -1,6 +1,7 @@
 /* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/headlight.h"
 #include "core/hit.h"
 #include "core/shading.h"
 
@@ -114,9 +115,41 @@ static uint32_t sky_light(const struct core_context *ctx, const gblock *g, const
     return dropped;
 }
 
+/* ---- illuminance ---- */
+
+static void add_lux(float *lux, int l, real e, uint32_t lanes) {
+    mask on = and_(mload(lanes, l), and_(e >= K(0.0f), e < K(1e30f)));
+    rstore(lux + l, rload(lux + l) + sel(on, e, K(0.0f)));
+}
+
+static void samples_lux(const struct core_context *ctx, const gblock *g, const rblock *r, uint32_t lanes, float *lux) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        reservoir q = reservoir_load(r, l);
+        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
+        add_lux(lux, l, sample_lux(ctx, s, q, light_load(ctx, q.light)), lanes);
+    }
+}
+
+static void sky_illuminance(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
+                            uint32_t lanes, float *lux) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        v3 way = V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
+        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
+        add_lux(lux, l, sky_lux(ctx, s, way, rload(share + l)), lanes);
+    }
+}
+
 static void sky_background(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out) {
     for (int l = 0; l < BLOCK; l += LANES)
         add_colour(out, l, sky_behind(ctx, lane_x(x, l), lane_y(y, l)), lanes);
+}
+
+static void headlight(const struct core_context *ctx, const gblock *g, uint32_t lanes, cblock *out) {
+    for (int l = 0; l < BLOCK; l += LANES)
+        add_colour(out, l,
+                   headlight_shade(surf_load(ctx, g, l, ctx->frame->camera.eye), rload(g->depth + l),
+                                   K(ctx->frame->sky)),
+                   lanes);
 }
 
 #include "backend/cpu/reuse_tmpl.h"
@@ -153,5 +186,8 @@ const kernels KERNELS = {
     .reference_place = reference_places,
     .sky_rays = sky_rays,
     .sky_shade = sky_light,
+    .samples_lux = samples_lux,
+    .sky_lux = sky_illuminance,
+    .headlight = headlight,
     .sky_background = sky_background,
 };

@@ -97,6 +97,12 @@ static void take_back(const cpu_place *now, const cpu_place *then, int l, gblock
     g->nz[l] = (float)(n[2] / length);
 }
 
+/* Was the instance in the scene that the world followed before? */
+static bool was_there(const cpu_world *w, uint32_t i) {
+    return i < w->places[1].len && w->places[1].data[i].model &&
+           w->places[1].data[i].model == w->places[0].data[i].model;
+}
+
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved) {
     const cpu_world *w = s->world;
     if (!s->b.instance || noc_cpu_shape(&s->seen) == w->shape)
@@ -104,9 +110,21 @@ const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, 
     *moved = *g;
     for (int l = 0; l < BLOCK; l++) {
         uint32_t i = s->b.instance[at][l];
-        if (i < w->places[1].len && w->places[1].data[i].model &&
-            w->places[1].data[i].model == w->places[0].data[i].model)
+        if (was_there(w, i))
             take_back(&w->places[0].data[i], &w->places[1].data[i], l, moved);
     }
     return moved;
+}
+
+uint32_t noc_cpu_known_before(const cpu_view *s, size_t at) {
+    const cpu_world *w = s->world;
+    uint64_t then = noc_cpu_shape(&s->seen);
+    uint32_t known = 0;
+    if (!s->b.instance || then == w->shape)
+        return 0xffff;
+    for (int l = 0; l < BLOCK; l++) {
+        uint32_t i = s->b.instance[at][l];
+        known |= (uint32_t)(i == NO_INSTANCE || (w->past == then && was_there(w, i))) << l;
+    }
+    return known;
 }

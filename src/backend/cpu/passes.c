@@ -336,6 +336,21 @@ static void shade_all(stage_run *run, worker *w, tile t) {
     }
 }
 
+/* Surfaces that are no emitter's, and the sky behind all. */
+static void headlight(stage_run *run, worker *w, tile t) {
+    frame_buffers *b = &run->s->b;
+    const gblock *g = b->g[run->frame->gbuffer];
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_cpu_tile_blocks(run, t, blocks);
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        uint32_t surfaces = lanes_with_surface(&g[at]),
+                 inside = lanes_inside(b, blocks[i].x / BLOCK_SIDE, blocks[i].y / BLOCK_SIDE);
+        run->k->headlight(&run->ctx, &g[at], surfaces, &b->colour[at]);
+        run->k->sky_background(&run->ctx, inside & ~surfaces, blocks[i].x, blocks[i].y, &b->colour[at]);
+    }
+}
+
 static void sky(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
     const noc_frame *f = run->frame;
@@ -381,8 +396,8 @@ static void sky(stage_run *run, worker *w, tile t) {
             const shadow_block *s = &w->batch.blocks[i];
             size_t at = asked[i];
             if (s->unoccluded)
-                w->dropped += (uint64_t)__builtin_popcount(
-                    run->k->sky_shade(&run->ctx, &g[at], &s->rays, share[i], s->unoccluded, &b->colour[at]));
+                w->dropped +=
+                    (uint64_t)__builtin_popcount(noc_cpu_shade_sky(run, &g[at], &s->rays, share[i], s->unoccluded, at));
         }
     }
 }
@@ -407,9 +422,11 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         [NOC_PASS_SHADE_SHARED] = noc_cpu_shade_shared,
         [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SHADE_ALL] = shade_all,
+        [NOC_PASS_HEADLIGHT] = headlight,
         [NOC_PASS_SKY] = sky,
     };
-    bool without_lights = pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY;
+    bool without_lights =
+        pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY || pass == NOC_PASS_HEADLIGHT;
     if (run->ctx.light_count || without_lights)
         passes[pass](run, w, t);
 }

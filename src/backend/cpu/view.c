@@ -153,7 +153,8 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
     out->memory_bytes = s->b.bytes + noc_cpu_rays_bytes(s->world) + noc_cpu_light_bytes(s->world) +
                         noc_cpu_past_bytes(s) + (s->b.instance ? blocks * sizeof(*s->b.instance) : 0) +
-                        blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked | s->b.aovs.held);
+                        blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked | s->b.aovs.held) +
+                        s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels);
     out->path = s->kernels->name;
 }
 

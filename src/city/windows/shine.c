@@ -53,12 +53,12 @@ building_use city_building_use(const char *id, noc_building_use told, double hei
 
 void city_window_shine(city_window *w, const building_use *use, uint64_t floor, uint64_t pair,
                        const noc_window_params *params) {
-    uint64_t own = city_window_hash(w->hash, params->seed), shared = own;
+    uint64_t own = city_window_hash(w->hash, NOC_WINDOW_SEED), shared = own;
     if (w->kind == NOC_WINDOW_OFFICE && city_window_number(own, 1) < WITH_STOREY)
-        shared = city_window_hash(floor, params->seed);
+        shared = city_window_hash(floor, NOC_WINDOW_SEED);
     else if (w->kind != NOC_WINDOW_OFFICE &&
-             city_window_number(city_window_hash(pair, params->seed), 1) < WITH_NEIGHBOUR)
-        shared = city_window_hash(pair, params->seed);
+             city_window_number(city_window_hash(pair, NOC_WINDOW_SEED), 1) < WITH_NEIGHBOUR)
+        shared = city_window_hash(pair, NOC_WINDOW_SEED);
     w->level = use->dark ? 1 : (float)city_window_number(shared, 2); /* no share is above 1 */
     double v = city_window_number(shared, 3), kelvin = params->kelvin, brightness = 1, spread = params->spread;
     bool screen = w->kind == NOC_WINDOW_FLAT && v < SCREENS;

@@ -41,6 +41,7 @@ static const built_part parts[] = {
     { noc_keep_traffic, noc_kept_traffic },   { noc_keep_environment, noc_kept_environment },
     { noc_keep_textures, noc_kept_textures }, { noc_keep_materials, noc_kept_materials },
     { noc_keep_classes, noc_kept_classes },   { noc_keep_meshes, noc_kept_meshes },
+    { noc_keep_streets, noc_kept_streets },
 };
 
 /* All that must be the same where a file is written and where it is read. */

@@ -213,6 +213,8 @@ struct lamp_keys {
     NOC_ARRAY(key) keys;
     size_t commas, points;       /* values with such a decimal sign */
     lamp_conditions *conditions; /* NULL: none */
+    bool told;                   /* lamps tell their tags */
+    char tags[GEO_LAMP_TAGS];    /* of the last one */
 };
 
 lamp_keys *lamp_keys_create(const noc_import_params *params) {
@@ -220,6 +222,8 @@ lamp_keys *lamp_keys_create(const noc_import_params *params) {
     noc_status status = NOC_OK;
     if (keys) /* both are understood, as lamp_mapping_check was asked, and luminaires_start */
         keys->conditions = lamp_conditions_create(params, NULL, &status);
+    if (keys)
+        keys->told = params && params->each_lamp;
     if (!keys || (!status && !parse_mappings(params, &keys->maps, NULL)))
         return keys;
     lamp_keys_destroy(keys);
@@ -330,7 +334,31 @@ lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag) {
     return keys && tag->known ? get_tag(keys, tag)->meaning : lamp_keys_meaning(keys, tag->key);
 }
 
+/* Whole tags, as many as there is room for, one a line. Those that are ours (@) are none, nor is what GDAL calls an id
+ * of OpenStreetMap. */
+static const char *tell_tags(lamp_keys *keys, const lamp_tag *tags, size_t count) {
+    size_t n = 0;
+    keys->tags[0] = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (tags[i].key[0] == '@' || !strcmp(tags[i].key, "osm_id") || !tags[i].value || !*tags[i].value)
+            continue;
+        char *at = keys->tags + n;
+        size_t room = sizeof(keys->tags) - n;
+        int size = noc_snprintf(at, room, "%s%s=%s", n ? "\n" : "", tags[i].key, tags[i].value);
+        if (size < 0 || (size_t)size >= room) {
+            *at = 0;
+            continue;
+        }
+        for (char *p = at + (n > 0); *p; p++)
+            *p = (unsigned char)*p < ' ' || *p == 0x7f ? ' ' : *p;
+        n += (size_t)size;
+    }
+    return keys->tags;
+}
+
 void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp) {
+    if (keys && keys->told)
+        lamp->tags = tell_tags(keys, tags, count);
     if (!keys || !keys->conditions)
         return;
     lamp_conditions_none(keys->conditions, lamp);

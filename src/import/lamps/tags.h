@@ -83,8 +83,8 @@ lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag); /* keys may
  * do not tell. */
 void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag);
 char lamp_keys_decimal(const lamp_keys *keys); /* keys may be NULL */
-/* Asks what params' rules and groups want to know of the tags of a lamp (geo_lamp.holds, tells_street); keys may be
- * NULL: none. */
+/* Asks what params' rules and groups want to know of the tags of a lamp (geo_lamp.holds, tells_street), and keeps the
+ * tags themselves until the next lamp where params ask for them (geo_lamp.tags); keys may be NULL: none. */
 void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp);
 /* Notes a tag's value for the table of columns; blank ones count as none. */
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);

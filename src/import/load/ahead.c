@@ -187,6 +187,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     ahead_event e = { .kind = AHEAD_LAMP, .u.lamp = *lamp };
     e.u.lamp.id = arena_strdup(&a->arena, lamp->id);
     e.u.lamp.ref = arena_strdup(&a->arena, lamp->ref ? lamp->ref : "");
+    e.u.lamp.tags = arena_strdup(&a->arena, lamp->tags);
     status = push(a, e);
     a->in_object = false;
     return status ? status : keep_points(a, lamp->xyz, 1, e.u.lamp.id ? e.u.lamp.id : "");

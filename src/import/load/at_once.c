@@ -104,6 +104,7 @@ static load_part copy_part(noc_arena *arena, load_part p) {
     case PART_LAMP:
         p.u.lamp.lamp.id = arena_strdup(arena, p.u.lamp.lamp.id);
         p.u.lamp.lamp.ref = arena_strdup(arena, p.u.lamp.lamp.ref);
+        p.u.lamp.lamp.tags = arena_strdup(arena, p.u.lamp.lamp.tags);
         break;
     case PART_MESSAGE: p.u.message.text = arena_strdup(arena, p.u.message.text); break;
     case PART_LOST:

@@ -98,8 +98,10 @@ noc_status noc_scene_place_camera(const noc_scene *scene, const noc_camera_param
     far_away = far_away ? far_away : &ignored;
     *far_away = false;
     noc_camera placed = noc_camera_default();
-    noc_status status = params->eye || params->target ? place(scene, params, &placed, far_away)
-                                                      : noc_scene_camera(scene, params->viewpoint, aspect, &placed);
+    noc_status status = params->photo_points
+                            ? noc_scene_photo_camera(scene, params->photo_points, params->crs, &placed, NULL)
+                        : params->eye || params->target ? place(scene, params, &placed, far_away)
+                                                        : noc_scene_camera(scene, params->viewpoint, aspect, &placed);
     if (!status && params->fov > 0)
         placed.fov_deg = params->fov;
     if (!status)

@@ -20,7 +20,8 @@ void each_lamp_begin(importer *im, const input *in, lamp_roads roads, const geo_
     im->lamp_now = (noc_report_lamp){ .file = kept(im, in ? in->path : NULL, last->file),
                                       .street = kept(im, roads.street ? roads.street->name : NULL, last->street),
                                       .road = kept(im, highway ? highway->word : NULL, last->road),
-                                      .rules = kept(im, matched, last->rules) };
+                                      .rules = kept(im, matched, last->rules),
+                                      .tags = kept(im, lamp->tags, last->tags) };
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {
         bool chosen = !in && what != NOC_LAMP_COLOUR && !(said >> what & 1); /* by the road, for one */
         if (chosen || city_lamp_assumes(lamp, (noc_lamp_default)what))
@@ -36,6 +37,6 @@ void each_lamp_light(void *user, const city_lamp_light *light) {
     l.height = light->height;
     l.direction = light->direction;
     l.watts = light->watts;
-    if (!l.file || !l.street || !l.road || !l.rules || !l.profile || !array_push(&im->report->lamps, l))
+    if (!l.file || !l.street || !l.road || !l.rules || !l.tags || !l.profile || !array_push(&im->report->lamps, l))
         noc_scene_out_of_memory(im->scene);
 }

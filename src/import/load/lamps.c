@@ -394,6 +394,8 @@ static noc_status finish_lamps(importer *im) {
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
     if (!status)
         status = roads_pave(im); /* lamps stand on them */
+    if (!status)
+        status = roads_name(im);
     if (status)
         return status;
     status = light_city(im, &e);

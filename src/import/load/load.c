@@ -127,6 +127,18 @@ static noc_status keep_streets(importer *im, const input *in) {
     return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
 }
 
+/* They can be asked for by their ids, too. */
+static noc_status name_streets(importer *im, const input *in) {
+    const noc_city_params defaults = noc_city_default_params();
+    const noc_city_params *params = im->params->builtin ? &im->params->builtin->city : &defaults;
+    geo_road street;
+    for (size_t i = 0; city_builtin_street(params, i, &im->names, &street); i++)
+        if (!noc_scene_add_street(im->scene, &(noc_scene_street){ street.id, street.id, (float)street.width, 0, 0 },
+                                  street.xyz, street.point_count))
+            return NOC_ERR_MEMORY;
+    return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
+}
+
 static noc_status read_builtin(importer *im, input *in) {
     double start = noc_wall_seconds();
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
@@ -137,6 +149,8 @@ static noc_status read_builtin(importer *im, input *in) {
     if (progress->update && !progress->update(progress->user, what, 0))
         return NOC_ERR_CANCELLED;
     noc_status status = noc_scene_add_builtin(im->scene, name, im->params->builtin);
+    if (!status && !strcmp(name, "city"))
+        status = name_streets(im, in);
     if (!status && !strcmp(name, "city") && im->params->traffic == NOC_SWITCH_ON)
         status = keep_streets(im, in);
     in->file.format = "built-in scene";

@@ -416,6 +416,7 @@ noc_status road_keep(importer *im, input *in, const geo_road *road);
 geo_triangles *area_kept(importer *im, noc_class cls);
 /* Surfaces of roads and areas, once the ground is there, where params want those. */
 noc_status roads_pave(importer *im);
+noc_status roads_name(importer *im); /* streets of the scene */
 
 /* body.c: the user's own bodies. */
 /* What the file of that option holds, as a scene of its own, z up; what and done: of progress. NULL: *status says why

@@ -344,43 +344,63 @@ noc_status luminaires_finish(importer *im) {
     return status ? status : luminaires_say(im);
 }
 
-noc_status noc_scene_say_group(noc_scene *scene, int group, const char *text) {
-    float scale[3] = { 0 }, rgb[3];
-    bool scaled = false, coloured = false, own = false;
-    if (!scene || !text)
-        return noc_null(scene ? scene->log : NULL, __func__);
+/* What a state says. */
+typedef struct group_state {
+    bool scaled, coloured, own;
+    float scale, rgb[3];
+} group_state;
+
+static bool read_word(const char *text, size_t n, group_state *state) {
+    char word[40] = "";
+    double x = NAN;
+    if (n < sizeof(word))
+        noc_snprintf(word, sizeof(word), "%.*s", (int)n, text);
+    size_t length = strlen(word);
+    bool kelvin = length > 1 && (word[length - 1] == 'K' || word[length - 1] == 'k');
+    if (kelvin)
+        word[length - 1] = 0;
+    bool number = noc_parse_double(word, &x), on = noc_ieq(word, "on"), off = noc_ieq(word, "off");
+    if (kelvin && number && x >= 1000 && x <= 25000) {
+        noc_kelvin_rgb(x, state->rgb);
+        state->coloured = true;
+    } else if (!kelvin && (on || off || (number && x >= 0 && x <= 1e6))) {
+        state->scale = on ? 1 : off ? 0 : (float)x;
+        state->scaled = true;
+    } else if (noc_ieq(word, "own")) {
+        state->own = true;
+    } else if (*word == '#' && lamp_hex_colour(word, state->rgb) && state->rgb[0] + state->rgb[1] + state->rgb[2] > 0) {
+        state->coloured = true;
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static noc_status read_state(const char *text, group_state *state, noc_log *log) {
     for (const char *s = text;; s++) {
         size_t n = strcspn(s, ",");
-        char word[40] = "";
-        double x = NAN;
-        if (n < sizeof(word))
-            noc_snprintf(word, sizeof(word), "%.*s", (int)n, s);
-        size_t length = strlen(word);
-        bool kelvin = length > 1 && (word[length - 1] == 'K' || word[length - 1] == 'k');
-        if (kelvin)
-            word[length - 1] = 0;
-        bool number = noc_parse_double(word, &x), on = noc_ieq(word, "on"), off = noc_ieq(word, "off");
-        if (kelvin && number && x >= 1000 && x <= 25000) {
-            noc_kelvin_rgb(x, rgb);
-            coloured = true;
-        } else if (!kelvin && (on || off || (number && x >= 0 && x <= 1e6))) {
-            scale[0] = scale[1] = scale[2] = on ? 1 : off ? 0 : (float)x;
-            scaled = true;
-        } else if (noc_ieq(word, "own")) {
-            own = true;
-        } else if (*word == '#' && lamp_hex_colour(word, rgb) && rgb[0] + rgb[1] + rgb[2] > 0) {
-            coloured = true;
-        } else {
-            return noc_error(scene->log, NOC_ERR_ARGUMENT,
+        if (!read_word(s, n, state))
+            return noc_error(log, NOC_ERR_ARGUMENT,
                              "group: \"%.60s\" is no state: off, on, a factor (0.3), a colour (2200K, #ffb060) or own",
                              text);
-        }
         s += n;
         if (!*s)
-            break;
+            return NOC_OK;
     }
-    noc_status status = scaled ? noc_scene_set_group(scene, group, scale) : NOC_OK;
-    if (!status && (coloured || own))
-        status = noc_scene_colour_group(scene, group, coloured ? rgb : NULL);
+}
+
+noc_status noc_group_state_check(const char *text, noc_log *log) {
+    return text ? read_state(text, &(group_state){ 0 }, log) : noc_null(log, __func__);
+}
+
+noc_status noc_scene_say_group(noc_scene *scene, int group, const char *text) {
+    group_state state = { 0 };
+    if (!scene || !text)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    noc_status status = read_state(text, &state, scene->log);
+    if (!status && state.scaled)
+        status = noc_scene_set_group(scene, group, (float[]){ state.scale, state.scale, state.scale });
+    if (!status && (state.coloured || state.own))
+        status = noc_scene_colour_group(scene, group, state.coloured ? state.rgb : NULL);
     return status;
 }

@@ -131,3 +131,14 @@ noc_status roads_pave(importer *im) {
     tell_paved(im, &paved);
     return NOC_OK;
 }
+
+/* Named ones stay with the scene. */
+noc_status roads_name(importer *im) {
+    for (size_t i = 0; i < im->roads.len; i++) {
+        const geo_road *r = &im->roads.data[i];
+        const noc_scene_street street = { r->name, r->id, (float)geo_road_width(r), 0, 0 };
+        if (*r->name && r->cls != GEO_ROAD_RAIL && !noc_scene_add_street(im->scene, &street, r->xyz, r->point_count))
+            return NOC_ERR_MEMORY;
+    }
+    return NOC_OK;
+}

@@ -159,7 +159,10 @@ static noc_status take_lamp(importer *im, input *in, pending_lamp p) {
     }
     p.lamp.id = arena_strdup(&im->names, p.lamp.id);
     p.lamp.ref = *p.lamp.ref ? arena_strdup(&im->names, p.lamp.ref) : "";
-    return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, in->path);
+    bool tagged = p.lamp.tags && *p.lamp.tags;
+    p.lamp.tags = tagged ? arena_strdup(&im->names, p.lamp.tags) : NULL;
+    bool kept = p.lamp.id && p.lamp.ref && (p.lamp.tags || !tagged) && array_push(&im->lamps, p);
+    return kept ? NOC_OK : noc_no_memory(im->log, in->path);
 }
 
 static void tell(noc_log *log, noc_log_level level, const char *text) {

@@ -127,7 +127,8 @@ static noc_status make_cover(maker *m) {
 
 /* Is it lit in the beginning? */
 static bool is_lit(const maker *m, const city_window *w) {
-    return (double)w->level < noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
+    return noc_window_level(w->level, m->params->seed) <
+           noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
 }
 
 /* counts: as a window, and is no further pane of one. */

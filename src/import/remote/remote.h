@@ -31,7 +31,7 @@ enum {
     REMOTE_GO,
     REMOTE_LOG = 32, /* level, text */
     REMOTE_CRS,      /* texts: srsName, place */
-    REMOTE_LAMP,     /* geo_lamp, texts: id, ref */
+    REMOTE_LAMP,     /* geo_lamp, texts: id, ref, tags */
     REMOTE_MATERIAL, /* noc_material, text: its name, remote_image, text: its name */
     REMOTE_MESH,     /* remote_mesh, text: name, positions, indices, places in an image */
     REMOTE_ISSUE,    /* kind, count, texts: reason, examples */
@@ -53,7 +53,7 @@ typedef struct remote_head {
 } remote_head;
 typedef struct remote_asked {
     int32_t parent;
-    bool named_lamps, inspect, footprints, roads, named_tracks;
+    bool named_lamps, inspect, footprints, roads, named_tracks, each_lamp;
 } remote_asked;
 typedef struct remote_object {
     int32_t kind, lod;

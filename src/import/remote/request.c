@@ -54,8 +54,8 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
         ask_conditions(params->luminaires[i].conditions, params->luminaires[i].condition_count, batch, &one);
     for (size_t i = 0; i < params->group_count; i++)
         ask_conditions(params->groups[i].conditions, params->groups[i].condition_count, batch, &one);
-    remote_asked asked = { (int32_t)getpid(),       sink->named_lamps,  sink->inspect,
-                           sink->footprint != NULL, sink->road != NULL, sink->named_tracks };
+    remote_asked asked = { (int32_t)getpid(),  sink->named_lamps,  sink->inspect,    sink->footprint != NULL,
+                           sink->road != NULL, sink->named_tracks, params->each_lamp };
     remote_put(&one, &asked, sizeof(asked));
     remote_add(batch, REMOTE_SINK, &one);
     remote_add(batch, REMOTE_GO, &one);
@@ -92,7 +92,8 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         unsigned char flags[sizeof(q->sink)];
         bool whole = remote_get(r, flags, sizeof(flags)) && flags[offsetof(remote_asked, named_lamps)] <= 1 &&
                      flags[offsetof(remote_asked, inspect)] <= 1 && flags[offsetof(remote_asked, footprints)] <= 1 &&
-                     flags[offsetof(remote_asked, roads)] <= 1 && flags[offsetof(remote_asked, named_tracks)] <= 1;
+                     flags[offsetof(remote_asked, roads)] <= 1 && flags[offsetof(remote_asked, named_tracks)] <= 1 &&
+                     flags[offsetof(remote_asked, each_lamp)] <= 1;
         if (whole)
             memcpy(&q->sink, flags, sizeof(flags));
         r->bad = !whole;
@@ -123,6 +124,7 @@ bool remote_receive(int fd, remote_request *q) {
             q->rule = noc_luminaire_default_rule();
             q->rule.conditions = q->conditions.data;
             q->rule.condition_count = q->conditions.len;
+            q->params.each_lamp = q->sink.each_lamp;
             q->params.luminaires = &q->rule;
             q->params.luminaire_count = q->conditions.len > 0;
             return good && q->reader && q->path;

@@ -129,6 +129,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     remote_put(&s->out, lamp, sizeof(*lamp));
     remote_put_text(&s->out, lamp->id);
     remote_put_text(&s->out, lamp->ref);
+    remote_put_text(&s->out, lamp->tags);
     emit(s, REMOTE_LAMP);
     return NOC_OK;
 }

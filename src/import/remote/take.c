@@ -38,14 +38,16 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
         return garbled(t);
     lamp.id = remote_get_text(one);
     lamp.ref = remote_get_text(one);
+    lamp.tags = remote_get_text(one);
     bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
                  (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe) &&
                  is_bool(&lamp.tells_street);
     lamp.fitting = NULL;
     /* or NaN */
     bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS);
-    if (one->bad || !kinds || !numbers || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 ||
-        !isfinite(lamp.xyz[0]) || !isfinite(lamp.xyz[1]))
+    if (one->bad || !kinds || !numbers || strlen(lamp.tags) >= GEO_LAMP_TAGS ||
+        lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||
+        !isfinite(lamp.xyz[1]))
         return garbled(t);
     return t->sink->lamp(t->sink->ctx, &lamp);
 }

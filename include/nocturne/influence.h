@@ -1,0 +1,238 @@
+/* nocturne/influence.h: who lights this? The lights that reach a point or a region, ranked by what they bring.
+ *
+ * A *region* is what is asked about: points and triangles with normals (noc_region). A *ranking* estimates what each
+ * emitter brings to it, by samples of its own and apart from any picture: docs/estimator.md, "Who lights this". Each
+ * number is unbiased and comes with its standard error, and more samples may be added as long as one likes.
+ *
+ * An *emitter* is what people call one light (noc_emitter). */
+#ifndef NOCTURNE_INFLUENCE_H
+#define NOCTURNE_INFLUENCE_H
+
+#include <nocturne/render.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- emitters ---- */
+
+typedef enum noc_emitter_kind {
+    NOC_EMITTER_LAMP,    /* of inputs, or placed by a rule: its lights follow one another, share its id, and lie within
+                            5 m of the first one */
+    NOC_EMITTER_WINDOW,  /* one pane */
+    NOC_EMITTER_VEHICLE, /* lights of one instance that share a name: a car's headlamps */
+    NOC_EMITTER_SURFACE, /* a mesh that shines, with all its triangles; lone flat lights */
+    NOC_EMITTER_OTHER,   /* lights that move by themselves */
+    NOC_EMITTER_KIND_COUNT
+} noc_emitter_kind;
+
+NOC_API const char *noc_emitter_kind_name(noc_emitter_kind kind); /* "lamp", "window", ... */
+
+/* One emitter as the scene has it since its last commit. */
+typedef struct noc_emitter {
+    noc_emitter_kind kind;
+    const char *name;   /* a lamp's id, an object's, "headlamp"; "" where it has none. Belongs to the scene */
+    const char *of;     /* vehicles: the instance's model; else "" */
+    size_t light;       /* its first light, for noc_scene_get_light */
+    size_t light_count; /* of it */
+    int instance;       /* vehicles: whose it is; else -1 */
+    double centre[3];   /* of the first light, local metres */
+    double lumens;      /* of all its lights */
+    bool inferred;      /* a lamp that a rule has placed */
+} noc_emitter;
+
+/* The emitter that a light is of, by an index below noc_scene_info.light_slots. NOC_ERR_ARGUMENT after reporting that
+ * there is none; NOC_ERR_MEMORY. One look at all lights. */
+NOC_API noc_status noc_scene_get_emitter(const noc_scene *scene, size_t light, noc_emitter *out);
+
+/* What an emitter lights: docs/estimator.md, "What a lamp lights". */
+typedef struct noc_reach_params {
+    int rays;        /* of each light; default 65536 */
+    double area_lux; /* lx: surfaces that get so much are counted; default 1 */
+    double far_lux;  /* lx: of the farthest place; default 0.1 */
+} noc_reach_params;
+
+#define NOC_REACH_DEFAULTS(set) set(rays, 65536) set(area_lux, 1) set(far_lux, 0.1)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_reach_params, noc_reach_default_params, NOC_REACH_DEFAULTS)
+#else
+#define noc_reach_default_params() ((noc_reach_params){ NOC_REACH_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
+
+/* Its illuminance is that of its light alone; its own body and others of lamps are left out. Places are local metres.
+ */
+typedef struct noc_reach {
+    noc_emitter emitter;
+    double met;                 /* lm of it that meet surfaces; the rest goes to the sky and into lamps' bodies */
+    double area;                /* m2 of surfaces that get area_lux or more of it */
+    double far, far_place[3];   /* m to the farthest place that gets far_lux of it; 0: none does */
+    double most, most_place[3]; /* lx where it is brightest */
+    size_t objects;             /* that get any of it */
+} noc_reach;
+
+typedef struct noc_reach_object {
+    const char *name; /* belongs to the scene; "" where it has none */
+    noc_class cls;    /* of a surface of it */
+    size_t object;    /* for noc_scene_object_name */
+    double lumens;    /* that it gets */
+} noc_reach_object;
+
+/* What the emitter that the light is of lights, and the first `count` objects by what they get of it, the strongest
+ * first (objects may be NULL with a count of 0); *found, which may be NULL, gets how many were filled. params may be
+ * NULL. The view's thread asks. The result is the same for any number of threads. NOC_ERR_ARGUMENT after reporting a
+ * light that there is not, or params that make no sense; NOC_ERR_MEMORY. */
+NOC_API noc_status noc_view_reach(noc_view *view, size_t light, const noc_reach_params *params, noc_reach *out,
+                                  noc_reach_object *objects, size_t count, size_t *found);
+
+/* ---- regions ---- */
+
+/* A part of a region: a triangle, or where both edges are 0 a point. */
+typedef struct noc_patch {
+    float p[3], u[3], v[3]; /* corner and edges, local metres */
+    float n[3];             /* unit normal, on the side whose light is asked for */
+    float weight;           /* of its mean in the region's: m2; of points any unit */
+    uint32_t material;      /* of the scene, for luminance; NOC_NO_MATERIAL: none */
+} noc_patch;
+#define NOC_NO_MATERIAL UINT32_MAX
+
+typedef struct noc_region noc_region;
+
+/* An empty region. NULL: no memory, reported. */
+NOC_API noc_region *noc_region_create(noc_log *log);
+NOC_API void noc_region_destroy(noc_region *region); /* NULL is allowed */
+/* Adds parts, which are copied. NOC_ERR_ARGUMENT after reporting one that is not finite, whose normal is no unit
+ * vector or whose weight is not above 0; then none of them is added. */
+NOC_API noc_status noc_region_add(noc_region *region, const noc_patch *patches, size_t count);
+
+/* Adds all triangles of the object of that id that are of these classes (1u << noc_class each; 0: all but closures and
+ * ground surfaces), as they face outwards, by their area. What lies on the ground faces up. Where a window's pane lies
+ * before a wall, both count, and the wall behind it is dark. NOC_ERR_ARGUMENT without a word where there is no such
+ * object, and after reporting it where it has no such surface. */
+NOC_API noc_status noc_region_add_object(noc_region *region, const noc_scene *scene, const char *id, uint32_t classes);
+/* Objects that noc_scene_object_name knows have numbers below this. */
+NOC_API size_t noc_scene_object_slots(const noc_scene *scene);
+
+/* A road of a map that has a name, or a street of the built-in city. Belongs to the scene. */
+typedef struct noc_street {
+    const char *name, *id;
+    double width; /* m, of its carriageway */
+    size_t point_count;
+    const float *points; /* 2 each, local metres: its middle */
+} noc_street;
+/* How many there are, in the order of the inputs; several make a street, mostly. */
+NOC_API size_t noc_scene_streets(const noc_scene *scene);
+NOC_API bool noc_scene_get_street(const noc_scene *scene, size_t index, noc_street *street); /* false: there is none */
+
+/* Rings of polygons, one after the other: a place is inside where it is in an odd number of them. */
+#define NOC_RINGS_CRS 80
+typedef struct noc_rings {
+    size_t count, *size;     /* points of each */
+    double *xy;              /* 2 each */
+    char crs[NOC_RINGS_CRS]; /* that the file is in: any that PROJ reads; "": it does not say */
+} noc_rings;
+/* The polygons of a file: GeoJSON, or WKT. Free them by noc_rings_free. An error is reported. */
+NOC_API noc_status noc_rings_read(const char *path, noc_rings *rings, noc_log *log);
+/* The same of WKT, POLYGON or MULTIPOLYGON. */
+NOC_API noc_status noc_rings_parse(const char *wkt, noc_rings *rings, noc_log *log);
+NOC_API void noc_rings_free(noc_rings *rings);
+
+typedef struct noc_region_info {
+    size_t patches;
+    double weight;    /* sum: m2 of a surface */
+    double centre[3]; /* weighted mean, local metres */
+    bool point;       /* it is a single point */
+} noc_region_info;
+NOC_API void noc_region_get_info(const noc_region *region, noc_region_info *info);
+
+/* What the text of a region is read with. */
+typedef struct noc_region_params {
+    const noc_camera *camera; /* of pixel and rect; NULL: there is none */
+    int width, height;        /* of its picture */
+    const char *crs;  /* of coordinates: any that PROJ reads; NULL: the scene's, local metres where it has none */
+    uint32_t classes; /* of object: as in noc_region_add_object */
+    bool files;       /* polygon may name a file */
+} noc_region_params;
+
+/* The region that a text says, as --region of nocturne influence does:
+ *
+ *   point:X,Y                 the ground there, else the highest surface
+ *   point:X,Y,Z               that place, as a luxmeter that is held level
+ *   point:X,Y,Z,NX,NY,NZ      the same, facing that way
+ *   pixel:X,Y                 the surface that the camera sees at that place of its picture, whose first pixel is 0,0
+ *   rect:X0,Y0,X1,Y1          surfaces that its pixels from the first to the second see, each pixel as much as another
+ *   object:ID                 all outer surfaces of an object
+ *   street:NAME               the roads and pavements of a street that a map names, as one sees them from above
+ *   polygon:FILE or WKT       the ground in polygons, as one sees it from above
+ *
+ * The view's thread asks (noc_view_cast). NULL after reporting what is wrong with the text, or with the place. */
+NOC_API noc_region *noc_region_find(noc_view *view, const noc_scene *scene, const char *text,
+                                    const noc_region_params *params, noc_log *log);
+
+/* ---- rankings ---- */
+
+typedef struct noc_estimate {
+    double value, error; /* and its standard error */
+} noc_estimate;
+
+/* What an emitter brings to the region: one row of a ranking. */
+typedef struct noc_influence_row {
+    noc_emitter emitter;
+    noc_estimate lux;   /* illuminance at the point, or mean over the region */
+    noc_estimate share; /* of all, the sky's too: 0..1 */
+    double distance;    /* m, from the region's centre to the emitter's */
+} noc_influence_row;
+
+/* All in all. */
+typedef struct noc_influence_sum {
+    noc_estimate lux; /* of all lights and the sky */
+    noc_estimate sky, sky_share;
+    noc_estimate rest, rest_share; /* of emitters beyond the rows that were asked for */
+    size_t emitters;               /* that were found to bring anything */
+    /* where params have an eye: mean luminance towards it of the light that the region reflects, cd/m2; else 0 */
+    noc_estimate luminance;
+    uint64_t samples, rays; /* points that were looked at, shadow rays that were traced */
+    double seconds;         /* that it took, wall clock */
+    uint64_t restarts;      /* times that it began anew, for the scene was edited */
+} noc_influence_sum;
+
+typedef struct noc_ranking noc_ranking;
+
+typedef struct noc_ranking_params {
+    /* what lights beside the lamps: sky, environment_*; and isa and seed; NULL: the defaults */
+    const noc_render_params *render;
+    const double *eye; /* local metres: whose luminance is asked for; NULL, the default: nobody's */
+} noc_ranking_params;
+
+/* When refining may stop: at the first of those that are above 0, and never before the standard errors mean
+ * something. */
+typedef struct noc_ranking_target {
+    double seconds; /* wall clock, of this call */
+    double error;   /* relative standard error of the greatest emitter's share */
+    uint64_t rays;  /* of all calls */
+} noc_ranking_target;
+
+/* Asks who lights the region, which is copied. The view's scene and device are used, and one thread at a time may use
+ * the view: a program that renders meanwhile makes another view of the scene. The view must outlive the ranking. params
+ * may be NULL. NULL after reporting an error: an empty region, or memory was refused. */
+NOC_API noc_ranking *noc_ranking_create(noc_view *view, const noc_region *region, const noc_ranking_params *params);
+NOC_API void noc_ranking_destroy(noc_ranking *ranking); /* NULL is allowed */
+
+/* Adds samples until the target is met; a NULL target, or one of zeros: one round. Where edits of the scene were
+ * committed since the last round it begins anew. progress may be NULL; where it cancels, NOC_ERR_CANCELLED is returned
+ * and all rounds that were completed stay. NOC_ERR_MEMORY after reporting it: the next call begins anew. The result is
+ * the same for any number of threads, but for a target in seconds. A commit waits for one round at most. */
+NOC_API noc_status noc_ranking_refine(noc_ranking *ranking, const noc_ranking_target *target,
+                                      const noc_progress *progress);
+
+/* The first `count` emitters by what they bring, the strongest first, into rows (NULL with a count of 0), and what all
+ * bring into sum (may be NULL). *found gets how many rows were filled; fewer where fewer emitters bring anything. Where
+ * lights were added or removed since the last round, emitters have no names and no
+ * places, and distances are NaN.
+ * NOC_ERR_ARGUMENT: nothing was estimated yet; NOC_ERR_MEMORY. */
+NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows, size_t count, size_t *found,
+                                   noc_influence_sum *sum);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

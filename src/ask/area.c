@@ -1,0 +1,146 @@
+/* Ground as it is seen from above: points of a grid, one in each cell at a random place, where rays come down. Cars,
+ * trees, lamps and the like are looked through, buildings are not. */
+#include "ask/ask.h"
+
+#include <math.h>
+
+enum { THROUGH = 8, CHUNK = 8192 }; /* surfaces that a ray goes through; rays at once */
+
+#define LOOKED_THROUGH                                                                                                 \
+    (1u << NOC_CLASS_TREE | 1u << NOC_CLASS_LAMP | 1u << NOC_CLASS_FURNITURE | 1u << NOC_CLASS_VEHICLE |               \
+     1u << NOC_CLASS_INSTALLATION)
+
+static uint64_t key_of(int32_t x, int32_t y) { return (uint64_t)(uint32_t)x << 32 | (uint32_t)y; }
+
+/* The cell's place; the same wherever it is asked for. */
+static void place_of(uint64_t key, double step, double out[2]) {
+    uint64_t h = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
+    h = (h ^ h >> 29) * 0xbf58476d1ce4e5b9u;
+    out[0] = ((double)(int32_t)(key >> 32) + (double)(h >> 40) * 0x1p-24) * step;
+    out[1] = ((double)(int32_t)(uint32_t)key + (double)(h >> 16 & 0xffffff) * 0x1p-24) * step;
+}
+
+static noc_status push(const asked *a, ask_cells *cells, uint64_t key) {
+    return array_push(&cells->keys, key) ? NOC_OK : noc_no_memory(a->log, "region");
+}
+
+static double distance2(const double p[2], const float *a, const float *b) {
+    double u[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, w[2] = { p[0] - a[0], p[1] - a[1] };
+    double length2 = u[0] * u[0] + u[1] * u[1], t = length2 > 0 ? (w[0] * u[0] + w[1] * u[1]) / length2 : 0;
+    t = NOC_CLAMP(t, 0, 1);
+    w[0] -= t * u[0];
+    w[1] -= t * u[1];
+    return w[0] * w[0] + w[1] * w[1];
+}
+
+noc_status ask_add_line(const asked *a, const noc_street *street, double beside, ask_cells *cells) {
+    double step = cells->step;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i + 1 < street->point_count && !status; i++) {
+        const float *p = street->points + 2 * i, *q = p + 2;
+        int32_t x0 = (int32_t)floor((fminf(p[0], q[0]) - beside) / step), y0;
+        int32_t x1 = (int32_t)floor((fmaxf(p[0], q[0]) + beside) / step), y1;
+        y0 = (int32_t)floor((fminf(p[1], q[1]) - beside) / step);
+        y1 = (int32_t)floor((fmaxf(p[1], q[1]) + beside) / step);
+        for (int32_t x = x0; x <= x1 && !status; x++)
+            for (int32_t y = y0; y <= y1 && !status; y++) {
+                double at[2];
+                place_of(key_of(x, y), step, at);
+                if (distance2(at, p, q) <= beside * beside)
+                    status = push(a, cells, key_of(x, y));
+            }
+    }
+    return status;
+}
+
+static bool inside(const noc_rings *rings, const double p[2]) {
+    bool in = false;
+    const double *xy = rings->xy;
+    for (size_t r = 0; r < rings->count; xy += 2 * rings->size[r++])
+        for (size_t i = 0, n = rings->size[r], j = n - 1; i < n; j = i++) {
+            const double *a = xy + 2 * i, *b = xy + 2 * j;
+            if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+                in = !in;
+        }
+    return in;
+}
+
+noc_status ask_add_rings(const asked *a, const noc_rings *rings, ask_cells *cells) {
+    double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY }, step = cells->step;
+    size_t points = 0;
+    for (size_t r = 0; r < rings->count; r++)
+        points += rings->size[r];
+    for (size_t i = 0; i < 2 * points; i++) {
+        lo[i % 2] = fmin(lo[i % 2], rings->xy[i]);
+        hi[i % 2] = fmax(hi[i % 2], rings->xy[i]);
+    }
+    noc_status status = NOC_OK;
+    for (int32_t x = (int32_t)floor(lo[0] / step); x * step <= hi[0] && !status; x++)
+        for (int32_t y = (int32_t)floor(lo[1] / step); y * step <= hi[1] && !status; y++) {
+            double at[2];
+            place_of(key_of(x, y), step, at);
+            if (inside(rings, at))
+                status = push(a, cells, key_of(x, y));
+        }
+    return status;
+}
+
+static int by_key(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Sends rays down at those places until each has met ground or a building. */
+static noc_status look_down(const asked *a, noc_ray *rays, noc_hit *hits, size_t count, double step, uint32_t classes,
+                            size_t *found) {
+    for (int turn = 0; turn < THROUGH && count; turn++) {
+        noc_status status = noc_view_cast(a->view, rays, count, hits);
+        size_t left = 0;
+        for (size_t i = 0; i < count && !status; i++) {
+            const noc_hit *h = &hits[i];
+            if (!h->hit)
+                continue;
+            if (LOOKED_THROUGH >> h->cls & 1 || h->light >= 0) {
+                rays[left] = rays[i];
+                rays[left++].origin[2] = h->place[2] - 1e-3;
+            } else if (classes >> h->cls & 1) {
+                noc_patch p = { .weight = (float)(step * step), .material = (uint32_t)h->material };
+                for (int k = 0; k < 3; k++) {
+                    p.p[k] = (float)h->place[k];
+                    p.n[k] = (float)h->normal[k];
+                }
+                status = noc_region_add(a->to, &p, 1);
+                ++*found;
+            }
+        }
+        if (status != NOC_OK)
+            return status;
+        count = left;
+    }
+    return NOC_OK;
+}
+
+noc_status ask_add_ground(const asked *a, ask_cells *cells, uint32_t classes, size_t *found) {
+    noc_ray *rays = noc_alloc(CHUNK * sizeof(*rays));
+    noc_hit *hits = noc_alloc(CHUNK * sizeof(*hits));
+    noc_status status = rays && hits ? NOC_OK : noc_no_memory(a->log, "region");
+    noc_scene_info info;
+    noc_scene_get_info(a->scene, &info);
+    *found = 0;
+    if (cells->keys.len)
+        qsort(cells->keys.data, cells->keys.len, sizeof(uint64_t), by_key);
+    for (size_t i = 0; i < cells->keys.len && !status;) {
+        size_t n = 0;
+        for (; i < cells->keys.len && n < CHUNK; i++) {
+            if (i && cells->keys.data[i] == cells->keys.data[i - 1])
+                continue;
+            double at[2];
+            place_of(cells->keys.data[i], cells->step, at);
+            rays[n++] = (noc_ray){ { at[0], at[1], info.bounds_max[2] + 1 }, { 0, 0, -1 }, INFINITY };
+        }
+        status = look_down(a, rays, hits, n, cells->step, classes, found);
+    }
+    free(rays);
+    free(hits);
+    return status;
+}

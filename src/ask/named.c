@@ -1,0 +1,169 @@
+/* Regions that have a name, and polygons. */
+#include "ask/ask.h"
+
+#include <math.h>
+
+enum { PLACES = 20000, MOST_CELLS = 4000000 }; /* points that a region is made of, about; cells that are looked at */
+
+#define FINEST 0.1   /* m between points */
+#define PAVEMENT 4.0 /* m beside a carriageway that pavements are looked for in */
+
+static const uint32_t roads = 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_BRIDGE;
+static const uint32_t ground = 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_BRIDGE |
+                               1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_WATER |
+                               1u << NOC_CLASS_GROUND | 1u << NOC_CLASS_OTHER;
+
+/* Names that there are, one of each; NULL where memory was refused. */
+typedef const char *name_at(const noc_scene *scene, size_t index);
+
+static noc_status not_found(const asked *a, const char *what, size_t count, name_at *at) {
+    const char **names = noc_alloc(NOC_MAX(count, 1) * sizeof(*names)), *last = NULL;
+    char said[64], near[64];
+    size_t n = 0;
+    if (!names)
+        return noc_no_memory(a->log, "region");
+    for (size_t i = 0; i < count; i++) {
+        const char *name = at(a->scene, i);
+        if (name && *name && (!last || strcmp(name, last) != 0))
+            last = names[n++] = name;
+    }
+    noc_text_clean(said, sizeof(said), a->text);
+    const char *nearest = noc_text_nearest(a->text, names, n);
+    noc_status status = nearest ? noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no %s \"%s\"; is it \"%s\"?",
+                                            what, said, noc_text_clean(near, sizeof(near), nearest))
+                                : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no %s \"%s\" among %zu%s%s%s",
+                                            what, said, n, n ? "; the first is \"" : "",
+                                            n ? noc_text_clean(near, sizeof(near), names[0]) : "", n ? "\"" : "");
+    free(names);
+    return status;
+}
+
+static const char *object_at(const noc_scene *scene, size_t i) { return noc_scene_object_name(scene, i); }
+
+noc_status ask_object(const asked *a) {
+    noc_region_info info;
+    noc_status status = noc_region_add_object(a->to, a->scene, a->text, a->params->classes);
+    noc_region_get_info(a->to, &info);
+    bool none = status == NOC_ERR_ARGUMENT;
+    for (size_t i = 0; none && i < noc_scene_object_slots(a->scene); i++) {
+        const char *name = noc_scene_object_name(a->scene, i);
+        if (name && !strcmp(name, a->text))
+            return status; /* it is there, and what is wrong was told */
+    }
+    return none ? not_found(a, "object", noc_scene_object_slots(a->scene), object_at) : status;
+}
+
+/* ---- streets ---- */
+
+static const char *street_at(const noc_scene *scene, size_t i) {
+    noc_street s;
+    return noc_scene_get_street(scene, i, &s) ? s.name : NULL;
+}
+
+static double length_of(const noc_street *s) {
+    double sum = 0;
+    for (size_t i = 0; i + 1 < s->point_count; i++)
+        sum +=
+            hypot((double)s->points[2 * i + 2] - s->points[2 * i], (double)s->points[2 * i + 3] - s->points[2 * i + 1]);
+    return sum;
+}
+
+static noc_status add_streets(const asked *a, double step, double beside, uint32_t classes, size_t *found,
+                              size_t *looked) {
+    ask_cells cells = { .step = step };
+    noc_street s;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; noc_scene_get_street(a->scene, i, &s) && !status; i++)
+        if (noc_ieq(s.name, a->text) || noc_ieq(s.id, a->text))
+            status = ask_add_line(a, &s, s.width / 2 + beside, &cells);
+    *looked = cells.keys.len;
+    status = status ? status : ask_add_ground(a, &cells, classes, found);
+    array_free(&cells.keys);
+    return status;
+}
+
+/* The roads and pavements beside its middle; where the scene has none there, the ground as wide as the carriageway. */
+noc_status ask_street(const asked *a) {
+    double area = 0;
+    noc_street s;
+    for (size_t i = 0; noc_scene_get_street(a->scene, i, &s); i++)
+        if (noc_ieq(s.name, a->text) || noc_ieq(s.id, a->text))
+            area += length_of(&s) * (s.width + 2 * PAVEMENT);
+    if (!(area > 0))
+        return not_found(a, "street", noc_scene_streets(a->scene), street_at);
+    double step = fmax(FINEST, sqrt(area / PLACES));
+    size_t found = 0, looked = 0;
+    noc_status status = add_streets(a, step, PAVEMENT, roads, &found, &looked);
+    if (!status && !found)
+        status = add_streets(a, step, 0, ground, &found, &looked);
+    return status || found ? status
+                           : noc_error(a->log, NOC_ERR_ARGUMENT,
+                                       "region: street \"%.60s\" has no ground that is seen from above", a->text);
+}
+
+/* ---- polygons ---- */
+
+static double area_of(const noc_rings *rings) {
+    double sum = 0;
+    const double *xy = rings->xy;
+    for (size_t r = 0; r < rings->count; xy += 2 * rings->size[r++])
+        for (size_t i = 0, n = rings->size[r], j = n - 1; i < n; j = i++)
+            sum +=
+                0.5 * ((xy[2 * j] - xy[0]) * (xy[2 * i + 1] - xy[1]) - (xy[2 * i] - xy[0]) * (xy[2 * j + 1] - xy[1]));
+    return fabs(sum);
+}
+
+static double box_of(const noc_rings *rings) {
+    double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+    size_t points = 0;
+    for (size_t r = 0; r < rings->count; r++)
+        points += rings->size[r];
+    for (size_t i = 0; i < 2 * points; i++) {
+        lo[i % 2] = fmin(lo[i % 2], rings->xy[i]);
+        hi[i % 2] = fmax(hi[i % 2], rings->xy[i]);
+    }
+    return (hi[0] - lo[0]) * (hi[1] - lo[1]);
+}
+
+static noc_status to_local(const asked *a, noc_rings *rings) {
+    noc_region_params params = *a->params;
+    asked of = *a;
+    size_t points = 0;
+    noc_status status = NOC_OK;
+    if (*rings->crs)
+        params.crs = rings->crs;
+    of.params = &params;
+    for (size_t r = 0; r < rings->count; r++)
+        points += rings->size[r];
+    for (size_t i = 0; i < points && !status; i++) {
+        double at[3] = { rings->xy[2 * i], rings->xy[2 * i + 1], 0 };
+        status = ask_to_local(&of, at);
+        rings->xy[2 * i] = at[0];
+        rings->xy[2 * i + 1] = at[1];
+    }
+    return status;
+}
+
+noc_status ask_polygon(const asked *a) {
+    noc_rings rings;
+    bool wkt = strchr(a->text, '(') != NULL;
+    if (!wkt && !a->params->files)
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: polygon: needs WKT, POLYGON((X Y, X Y, ...))");
+    noc_status status = wkt ? noc_rings_parse(a->text, &rings, a->log) : noc_rings_read(a->text, &rings, a->log);
+    if (status != NOC_OK)
+        return status;
+    ask_cells cells = { .step = 1 };
+    size_t found = 0;
+    status = to_local(a, &rings);
+    if (!status) {
+        cells.step = fmax(FINEST, fmax(sqrt(area_of(&rings) / PLACES), sqrt(box_of(&rings) / MOST_CELLS)));
+        status = ask_add_rings(a, &rings, &cells);
+    }
+    status = status ? status : ask_add_ground(a, &cells, ground, &found);
+    if (!status && !found)
+        status =
+            noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no ground in the polygon that is seen from above");
+    array_free(&cells.keys);
+    noc_rings_free(&rings);
+    return status;
+}

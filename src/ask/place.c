@@ -1,0 +1,116 @@
+/* Regions that are places: a point, and what pixels see. */
+#include "ask/ask.h"
+
+#include <math.h>
+
+enum { RECT_RAYS = 16384 }; /* of a rectangle at most; each stands for some pixels then */
+
+noc_status ask_to_local(const asked *a, double xyz[3]) {
+    noc_scene_info info;
+    noc_scene_get_info(a->scene, &info);
+    bool none = !a->params->crs && !*info.given_crs;
+    return none ? NOC_OK : noc_scene_to_local(a->scene, a->params->crs, xyz);
+}
+
+static bool unit(double n[3]) {
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3 && length > 0; k++)
+        n[k] /= length;
+    return length > 0;
+}
+
+static noc_status add(const asked *a, const double at[3], const double normal[3], int material) {
+    noc_patch p = { .weight = 1, .material = material >= 0 ? (uint32_t)material : NOC_NO_MATERIAL };
+    for (int k = 0; k < 3; k++) {
+        p.p[k] = (float)at[k];
+        p.n[k] = (float)normal[k];
+    }
+    return noc_region_add(a->to, &p, 1);
+}
+
+/* ---- points ---- */
+
+/* The first surface under a place, facing up. */
+static noc_status add_under(const asked *a, const double at[3], double reach) {
+    noc_ray ray = { { at[0], at[1], at[2] }, { 0, 0, -1 }, reach };
+    noc_hit hit;
+    noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
+    if (status != NOC_OK)
+        return status;
+    return hit.hit ? add(a, hit.place, hit.normal, hit.material)
+                   : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no surface at point:%.60s", a->text);
+}
+
+noc_status ask_point(const asked *a) {
+    double n[6] = { 0, 0, 0, 0, 0, 1 }, ground;
+    bool turned = noc_text_numbers(a->text, ',', 6, n), placed = turned || noc_text_numbers(a->text, ',', 3, n);
+    if (!placed && !noc_text_numbers(a->text, ',', 2, n))
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s is not X,Y or X,Y,Z or X,Y,Z,NX,NY,NZ",
+                         a->text);
+    noc_status status = ask_to_local(a, n);
+    if (status != NOC_OK)
+        return status;
+    if (placed)
+        return unit(n + 3) ? add(a, n, n + 3, -1)
+                           : noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s faces nowhere", a->text);
+    noc_scene_info info;
+    noc_scene_get_info(a->scene, &info);
+    bool found = noc_scene_ground(a->scene, n[0], n[1], &ground);
+    n[2] = found ? ground + 0.02 : info.bounds_max[2] + 1;
+    return add_under(a, n, found ? 0.1 : info.bounds_max[2] - info.bounds_min[2] + 2);
+}
+
+/* ---- pixels ---- */
+
+static noc_status check_picture(const asked *a, const double *at, size_t count) {
+    const noc_region_params *p = a->params;
+    if (!p->camera || p->width < 1 || p->height < 1)
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: pixels need a camera");
+    for (size_t i = 0; i < count; i++)
+        if (!(at[i] >= 0 && at[i] < (i % 2 ? p->height : p->width)))
+            return noc_error(a->log, NOC_ERR_ARGUMENT, "region: \"%.60s\" lies outside of a picture of %d x %d",
+                             a->text, p->width, p->height);
+    return NOC_OK;
+}
+
+/* The surface that is seen there; nothing is added where there is none. */
+static noc_status add_seen(const asked *a, double x, double y) {
+    noc_ray ray;
+    noc_hit hit;
+    if (noc_camera_ray(a->params->camera, a->params->width, a->params->height, (double[2]){ x, y }, &ray) != NOC_OK)
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: the camera looks nowhere");
+    noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
+    return status != NOC_OK || !hit.hit ? status : add(a, hit.place, hit.normal, hit.material);
+}
+
+static noc_status check_seen(const asked *a) {
+    noc_region_info info;
+    noc_region_get_info(a->to, &info);
+    return info.patches ? NOC_OK
+                        : noc_error(a->log, NOC_ERR_ARGUMENT, "region: no surface is seen at \"%.60s\"", a->text);
+}
+
+noc_status ask_pixel(const asked *a) {
+    double at[2];
+    if (!noc_text_numbers(a->text, ',', 2, at))
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: pixel:%.60s is not X,Y", a->text);
+    noc_status status = check_picture(a, at, 2);
+    status = status ? status : add_seen(a, floor(at[0]) + 0.5, floor(at[1]) + 0.5);
+    return status ? status : check_seen(a);
+}
+
+noc_status ask_rect(const asked *a) {
+    double at[4];
+    if (!noc_text_numbers(a->text, ',', 4, at))
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: rect:%.60s is not X0,Y0,X1,Y1", a->text);
+    noc_status status = check_picture(a, at, 4);
+    if (status != NOC_OK)
+        return status;
+    double x0 = floor(fmin(at[0], at[2])), x1 = floor(fmax(at[0], at[2])) + 1, y0 = floor(fmin(at[1], at[3])),
+           y1 = floor(fmax(at[1], at[3])) + 1;
+    double step = fmax(1, sqrt((x1 - x0) * (y1 - y0) / RECT_RAYS));
+    for (double y = y0 + 0.5 * step; y < y1 && !status; y += step)
+        for (double x = x0 + 0.5 * step; x < x1 && !status; x += step)
+            status = add_seen(a, x, y);
+    return status ? status : check_seen(a);
+}

@@ -1,0 +1,224 @@
+/* nocturne influence: who lights this? */
+#include "influence.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define A influence_args
+static const noc_option own_options[] = {
+    { "region", "Influence", NOC_OPTION_TEXT, offsetof(A, region), 0, 0, NULL, "REGION",
+      "what is asked about: point:X,Y, pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE" },
+    { "class", "Influence", NOC_OPTION_TEXT, offsetof(A, classes), 0, 0, NULL, "NAMES",
+      "of an object: surfaces of these classes alone, such as wall,roof" },
+    { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",
+      "instead of a region: a lamp, what is known of it, and what it lights" },
+    { "top", "Influence", NOC_OPTION_INT, offsetof(A, top), 1, 1000000, NULL, "", "rows: the strongest so many" },
+    { "csv", "Influence", NOC_OPTION_TEXT, offsetof(A, csv), 0, 0, NULL, "FILE", "write all rows as CSV, too" },
+    { "json", "Influence", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
+    { "error", "Influence", NOC_OPTION_REAL, offsetof(A, error), 1e-6, 1, NULL, "",
+      "relative standard error of the greatest share to end at" },
+    { "time", "Influence", NOC_OPTION_REAL, offsetof(A, time), 0, 1e6, NULL, "s",
+      "time to end after, whatever the error is; 0 = any" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+
+static const noc_option other_options[] = {
+    { "threads", "Influence", NOC_OPTION_INT, offsetof(render_args, threads), 0, 1024, NULL, "",
+      "threads; 0 = one a core" },
+    { NULL },
+};
+static const noc_option *of_threads(void) { return other_options; }
+
+static int run(void *arguments);
+
+static const influence_args defaults = {
+    .render = { .command = &cli_influence,
+                .camera = noc_camera_default_params(),
+                .exposure = "auto",
+                .render = noc_render_default_params(),
+                .display = noc_display_default_params(),
+                .import = noc_import_default_params(),
+                .builtin = noc_builtin_default_params() },
+    .top = 20,
+    .time = 10,
+    .error = 0.01,
+};
+/* The estimate is of its own. */
+static const char *const of_pictures[] = { "jitter",
+                                           "accumulate",
+                                           "emitters",
+                                           "method",
+                                           "candidates",
+                                           "draws",
+                                           "list",
+                                           "tail",
+                                           "shadow-rays",
+                                           "learn",
+                                           "influence",
+                                           "influence-boxes",
+                                           "influence-cluster",
+                                           "uniform-every",
+                                           "rays",
+                                           "final-ray",
+                                           "temporal",
+                                           "spatial",
+                                           "neighbours",
+                                           "radius",
+                                           "passes",
+                                           "history",
+                                           "bias",
+                                           "bias-rays",
+                                           "visibility-reuse",
+                                           "reject-depth",
+                                           "reject-normal",
+                                           "isa",
+                                           NULL };
+
+const cli_command cli_influence = {
+    "influence",
+    "INPUT... --region REGION | --lamp ID",
+    "Tells who lights a place: the lights that reach it, ranked, in lux and shares with their standard errors.",
+    "Examples\n"
+    "  nocturne influence city.gml lamps.geojson --region point:678120,5403410\n"
+    "  nocturne influence builtin:city --region pixel:640,500 --top 10\n"
+    "  nocturne influence city.yaml --camera square --region rect:300,400,500,600 --csv square.csv\n"
+    "  nocturne influence city.gml lamps.geojson --lamp node/3116871579\n"
+    "Coordinates are in the scene's CRS, of scenes that have none local metres; pixels are those of the camera's "
+    "picture of --width by --height.\n",
+    { { options, 0, NULL },
+      { of_threads, offsetof(A, render), NULL },
+      { cli_camera_options, offsetof(A, render), NULL },
+      { noc_camera_options, offsetof(A, render.camera), NULL },
+      { noc_render_options, offsetof(A, render.render), of_pictures },
+      { noc_import_options, offsetof(A, render.import), NULL },
+      { noc_city_options, offsetof(A, render.builtin.city), NULL },
+      { noc_builtin_options, offsetof(A, render.builtin), NULL },
+      { cli_common_options, 0, NULL } },
+    sizeof(influence_args),
+    &defaults,
+    run,
+};
+
+static int parse_classes(influence_args *args) {
+    const char *names[NOC_CLASS_COUNT];
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        names[c] = noc_class_name((noc_class)c);
+    for (const char *p = args->classes; p && *p;) {
+        char word[32];
+        size_t n = strcspn(p, ",");
+        int cls = 0;
+        snprintf(word, sizeof(word), "%.*s", (int)(n < 31 ? n : 31), p);
+        while (cls < NOC_CLASS_COUNT && strcmp(word, names[cls]))
+            cls++;
+        const char *nearest = cls < NOC_CLASS_COUNT ? NULL : noc_text_nearest(word, names, NOC_CLASS_COUNT);
+        if (cls == NOC_CLASS_COUNT)
+            return cli_usage(&cli_influence, "--class: no class \"%s\"%s%s%s", word, nearest ? "; is it " : "",
+                             nearest ? nearest : "", nearest ? "?" : "");
+        args->class_bits |= 1u << cls;
+        p += n + (p[n] == ',');
+    }
+    return CLI_OK;
+}
+
+static int check(influence_args *args) {
+    render_args *render = &args->render;
+    if (!render->common.input_count)
+        return cli_usage(&cli_influence, "which city? builtin:city is the built-in one");
+    if (!args->region == !args->lamp)
+        return args->lamp ? cli_usage(&cli_influence, "--region and --lamp exclude each other")
+                          : cli_usage(&cli_influence, "--region is needed, point:X,Y, for one; or --lamp");
+    if (args->lamp && args->csv)
+        return cli_usage(&cli_influence, "--csv is for --region");
+    int status = parse_classes(args);
+    status = status ? status : cli_choose_camera(render);
+    if (status)
+        return status;
+    cli_add_named(&render->common, &render->import);
+    return cli_check_city(render);
+}
+
+static bool show(void *user, const char *what, double done) {
+    (void)user;
+    cli_progress_show(done, -1, "%s", what);
+    return !cli_interrupted();
+}
+
+/* The seen luminance is told of pixels alone: a point is seen by nobody. */
+static bool has_eye(const influence_args *args) {
+    return !strncmp(args->region, "pixel:", 6) || !strncmp(args->region, "rect:", 5);
+}
+
+static noc_status ask(influence_job *job) {
+    influence_args *args = job->args;
+    const render_args *render = &args->render;
+    noc_region_params of = { .camera = &job->camera,
+                             .width = render->render.width,
+                             .height = render->render.height,
+                             .classes = args->class_bits,
+                             .files = true };
+    noc_ranking_params params = { &render->render, has_eye(args) ? job->camera.eye : NULL };
+    noc_ranking_target target = { .seconds = args->time, .error = args->error };
+    noc_progress progress = { show, job };
+    job->region = noc_region_find(job->view, job->scene, args->region, &of, job->log);
+    noc_ranking *ranking = job->region ? noc_ranking_create(job->view, job->region, &params) : NULL;
+    if (!ranking)
+        return NOC_ERR_ARGUMENT;
+    noc_region_get_info(job->region, &job->region_info);
+    noc_status status = noc_ranking_refine(ranking, &target, &progress);
+    cli_progress_clear();
+    job->rows = cli_alloc((size_t)args->top * sizeof(*job->rows));
+    status = status ? status : noc_ranking_get(ranking, job->rows, (size_t)args->top, &job->count, &job->sum);
+    status = status ? status : influence_print(job);
+    if (!status && args->csv) { /* of all that was found */
+        free(job->rows);
+        job->rows = cli_alloc((job->sum.emitters + 1) * sizeof(*job->rows));
+        status = noc_ranking_get(ranking, job->rows, job->sum.emitters, &job->count, &job->sum);
+        status = status ? status : influence_write_csv(job);
+    }
+    noc_ranking_destroy(ranking);
+    return status;
+}
+
+static noc_status work(influence_job *job) {
+    render_args *render = &job->args->render;
+    const noc_progress progress = { cli_load_progress, NULL };
+    render->import.each_lamp = true;
+    job->scene = noc_scene_create(job->log);
+    noc_status status = cli_load_city(render, job->scene, &progress, &job->report);
+    cli_progress_clear();
+    if (!status)
+        status = noc_scene_place_camera(job->scene, &render->camera,
+                                        (double)render->render.width / render->render.height, &job->camera, NULL);
+    noc_scene_get_info(job->scene, &job->info);
+    job->device = status ? NULL : noc_device_create(&(noc_device_params){ .threads = render->threads }, job->log);
+    job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
+    if (!status && !job->view)
+        status = NOC_ERR_MEMORY;
+    return status ? status : job->args->lamp ? influence_tell_lamp(job) : ask(job);
+}
+
+static int run(void *arguments) {
+    influence_args *args = arguments;
+    int status = check(args);
+    if (status)
+        return status;
+    cli_catch_signals();
+    cli_nothing_to_keep(true);
+    cli_progress_start(args->render.common.quiet);
+    influence_job job = { .args = args, .log = cli_log_create(&args->render.common) };
+    noc_status failed = work(&job);
+    cli_nothing_to_keep(false);
+    noc_region_destroy(job.region);
+    noc_view_destroy(job.view);
+    noc_device_destroy(job.device);
+    noc_report_destroy(job.report);
+    noc_scene_destroy(job.scene);
+    noc_log_destroy(job.log);
+    free(job.rows);
+    if (cli_interrupted()) {
+        cli_error("interrupted");
+        return CLI_INTERRUPTED + cli_interrupted();
+    }
+    return failed ? CLI_FAILURE : cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+}

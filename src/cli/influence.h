@@ -1,0 +1,44 @@
+/* nocturne influence: what its files share. */
+#ifndef NOC_CLI_INFLUENCE_H
+#define NOC_CLI_INFLUENCE_H
+
+#include "render.h"
+
+/* Arguments of render that it takes, too, and its own. */
+typedef struct influence_args {
+    render_args render;
+    const char *region, *lamp, *csv, *classes;
+    uint32_t class_bits; /* of classes; 0: the library's */
+    bool json;
+    int top;
+    double time, error; /* s; relative */
+} influence_args;
+
+/* One question: inputs to table. */
+typedef struct influence_job {
+    influence_args *args;
+    noc_log *log;
+    noc_scene *scene;
+    noc_report *report;
+    noc_device *device;
+    noc_view *view;
+    noc_camera camera;
+    noc_region *region;
+    noc_region_info region_info;
+    noc_scene_info info;
+    noc_influence_row *rows;
+    size_t count;
+    noc_influence_sum sum;
+} influence_job;
+
+/* influence_lamp.c: --lamp */
+noc_status influence_tell_lamp(influence_job *job);
+
+/* influence_out.c */
+/* What the report tells of a lamp's light; NULL: nothing. */
+const noc_report_lamp *influence_find_lamp(const noc_report *report, size_t light);
+void influence_json_tags(const char *tags);
+noc_status influence_print(influence_job *job); /* the table, or JSON */
+noc_status influence_write_csv(influence_job *job);
+
+#endif

@@ -1,0 +1,285 @@
+/* What nocturne influence prints and writes: a row an emitter, then what is left, the sky and the sum. */
+#include "influence.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is told of an emitter beside its light: of lamps, by the report. */
+typedef struct told {
+    const noc_report_lamp *lamp; /* NULL: nothing */
+    double kelvin;               /* NaN: no black body's colour, or it is dark */
+    double at[3];                /* in the scene's CRS, or local metres */
+} told;
+
+/* Lamps lie in the report in the order of their lights. */
+const noc_report_lamp *influence_find_lamp(const noc_report *report, size_t light) {
+    size_t lo = 0, hi = 1;
+    while (noc_report_get_lamp(report, hi))
+        hi *= 2;
+    while (lo < hi) {
+        size_t middle = (lo + hi) / 2;
+        const noc_report_lamp *l = noc_report_get_lamp(report, middle);
+        if (l && l->light < light)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    const noc_report_lamp *l = noc_report_get_lamp(report, lo);
+    return l && l->light == light ? l : NULL;
+}
+
+static told tell(const influence_job *job, const noc_influence_row *row) {
+    told t = { influence_find_lamp(job->report, row->emitter.light), NAN, { 0 } };
+    noc_light_info light;
+    memcpy(t.at, row->emitter.centre, sizeof(t.at));
+    if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, t.at))
+        t.at[0] = t.at[1] = t.at[2] = NAN;
+    if (!noc_scene_get_light(job->scene, row->emitter.light, &light) && !light.removed)
+        t.kelvin = cli_kelvin_of(light.light.emission);
+    return t;
+}
+
+/* ---- the table ---- */
+
+static void print_estimate(noc_estimate e, bool share) {
+    double by = share ? 100 : 1;
+    printf(share ? " %6.2f" : " %9.4g", e.value * by);
+    printf(share ? " ±%-5.2f" : " ±%-8.2g", e.error * by);
+}
+
+static void print_name(const noc_influence_row *row, const told *t) {
+    const noc_emitter *e = &row->emitter;
+    char name[64], street[48];
+    noc_text_clean(name, sizeof(name), *e->name ? e->name : "unnamed");
+    printf("  %s", name);
+    if (e->instance >= 0) {
+        noc_text_clean(name, sizeof(name), e->of);
+        printf(" of %s %d", name, e->instance);
+    }
+    if (e->light_count > 1)
+        printf(" (%zu lights)", e->light_count);
+    if (e->inferred)
+        printf(", inferred");
+    if (t->lamp && *t->lamp->street)
+        printf(", %s", noc_text_clean(street, sizeof(street), t->lamp->street));
+    if (t->lamp && *t->lamp->file) {
+        const char *slash = strrchr(t->lamp->file, '/');
+        printf(", %s", noc_text_clean(street, sizeof(street), slash ? slash + 1 : t->lamp->file));
+    }
+    putchar('\n');
+}
+
+static void print_row(const influence_job *job, const noc_influence_row *row) {
+    told t = tell(job, row);
+    char kelvin[16] = "-";
+    if (isfinite(t.kelvin))
+        snprintf(kelvin, sizeof(kelvin), "%.0f", t.kelvin);
+    print_estimate(row->lux, false);
+    print_estimate(row->share, true);
+    printf("  %-8s %8.1f %8.0f %6s", noc_emitter_kind_name(row->emitter.kind), row->distance, row->emitter.lumens,
+           kelvin);
+    print_name(row, &t);
+}
+
+static void print_rest(const char *name, noc_estimate lux, noc_estimate share) {
+    print_estimate(lux, false);
+    print_estimate(share, true);
+    printf("  %s\n", name);
+}
+
+static noc_status print_table(influence_job *job) {
+    const noc_influence_sum *s = &job->sum;
+    const noc_region_info *r = &job->region_info;
+    double at[3] = { r->centre[0], r->centre[1], r->centre[2] };
+    char a[64], b[64];
+    if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
+        return NOC_ERR_ARGUMENT;
+    printf("%s: %s %.3f %.3f %.3f in %s\n", job->args->region, r->point ? "at" : "around", at[0], at[1], at[2],
+           *job->info.given_crs ? job->info.given_crs : "local metres");
+    printf("%s lx ± %.2g by %s%s\n", cli_number(a, s->lux.value), s->lux.error, noc_text_many(b, s->emitters, "light"),
+           s->sky.value > 0 ? " and the sky" : "");
+    if (s->luminance.value > 0)
+        printf("%s cd/m2 ± %.2g towards the camera, without what shines itself\n", cli_number(a, s->luminance.value),
+               s->luminance.error);
+    if (job->count)
+        printf("%10s%9s %7s %6s   %-8s %8s %8s %6s  %s\n", "lx", "", "share %", "", "kind", "m away", "lm", "K",
+               "name, street, file");
+    for (size_t i = 0; i < job->count; i++)
+        print_row(job, &job->rows[i]);
+    if (s->emitters > job->count) {
+        snprintf(b, sizeof(b), "%s others", noc_text_count(a, s->emitters - job->count));
+        print_rest(b, s->rest, s->rest_share);
+    }
+    if (s->sky.value > 0)
+        print_rest("sky", s->sky, s->sky_share);
+    if (!job->args->render.common.quiet)
+        printf("%s rays in %s\n", noc_text_count(a, s->rays), noc_text_seconds(b, s->seconds));
+    return NOC_OK;
+}
+
+/* ---- JSON and CSV ---- */
+
+static void json_estimate(const char *name, noc_estimate e) {
+    printf("\"%s\": ", name);
+    cli_json_number(stdout, e.value);
+    printf(", \"%s_error\": ", name);
+    cli_json_number(stdout, e.error);
+}
+
+static void json_text(const char *name, const char *text) {
+    printf(", \"%s\": ", name);
+    cli_json_text(stdout, text);
+}
+
+static void json_number(const char *name, double v) {
+    printf(", \"%s\": ", name);
+    cli_json_number(stdout, v);
+}
+
+/* An object of texts; of a key that comes twice the last one counts, as readers of JSON have it. */
+void influence_json_tags(const char *tags) {
+    printf(", \"tags\": {");
+    for (const char *p = tags; *p;) {
+        size_t n = strcspn(p, "\n"), key = strcspn(p, "=");
+        char *text = cli_format("%.*s", (int)n, p);
+        bool pair = key < n;
+        if (pair)
+            text[key] = 0;
+        fputs(p == tags ? "" : ", ", stdout);
+        cli_json_text(stdout, text);
+        printf(": ");
+        cli_json_text(stdout, pair ? text + key + 1 : "");
+        free(text);
+        p += n + (p[n] == '\n');
+    }
+    printf("}");
+}
+
+static void json_row(const influence_job *job, const noc_influence_row *row) {
+    told t = tell(job, row);
+    const noc_emitter *e = &row->emitter;
+    printf("    {");
+    json_estimate("lux", row->lux);
+    printf(", ");
+    json_estimate("share", row->share);
+    json_text("kind", noc_emitter_kind_name(e->kind));
+    json_text("name", e->name);
+    json_text("of", e->of);
+    json_number("instance", e->instance >= 0 ? e->instance : NAN);
+    json_number("light", (double)e->light);
+    json_number("lights", (double)e->light_count);
+    json_number("x", t.at[0]);
+    json_number("y", t.at[1]);
+    json_number("z", t.at[2]);
+    json_number("distance", row->distance);
+    json_number("lumens", e->lumens);
+    json_number("kelvin", t.kelvin);
+    json_text("placed", e->inferred ? "inferred" : t.lamp ? "mapped" : "");
+    json_text("street", t.lamp ? t.lamp->street : "");
+    json_text("file", t.lamp ? t.lamp->file : "");
+    json_text("profile", t.lamp ? t.lamp->profile : "");
+    influence_json_tags(t.lamp ? t.lamp->tags : "");
+    printf("}");
+}
+
+static noc_status print_json(influence_job *job) {
+    const noc_influence_sum *s = &job->sum;
+    printf("{\"nocturne\": \"%s\", \"region\": ", noc_version());
+    cli_json_text(stdout, job->args->region);
+    json_text("crs", job->info.given_crs);
+    printf(",\n ");
+    json_estimate("lux", s->lux);
+    printf(",\n ");
+    json_estimate("sky", s->sky);
+    printf(", ");
+    json_estimate("sky_share", s->sky_share);
+    printf(",\n ");
+    json_estimate("rest", s->rest);
+    printf(", ");
+    json_estimate("rest_share", s->rest_share);
+    printf(",\n ");
+    json_estimate("luminance", s->luminance);
+    json_number("lights", (double)s->emitters);
+    json_number("samples", (double)s->samples);
+    json_number("rays", (double)s->rays);
+    json_number("seconds", s->seconds);
+    printf(",\n  \"rows\": [");
+    for (size_t i = 0; i < job->count; i++) {
+        fputs(i ? ",\n" : "\n", stdout);
+        json_row(job, &job->rows[i]);
+    }
+    printf("\n]}\n");
+    return NOC_OK;
+}
+
+noc_status influence_print(influence_job *job) { return job->args->json ? print_json(job) : print_table(job); }
+
+/* Names are strangers' words: spreadsheets run what begins like a formula, and an apostrophe makes it text to them. */
+static void csv_text(FILE *out, const char *text) {
+    fputs(",\"", out);
+    if (*text && strchr("=+-@", *text))
+        putc('\'', out);
+    for (const char *p = text; *p; p++) {
+        if (*p == '"')
+            putc('"', out);
+        putc((unsigned char)*p < ' ' ? ' ' : *p, out);
+    }
+    putc('"', out);
+}
+
+static void csv_number(FILE *out, double v, int decimals) {
+    if (!isfinite(v))
+        putc(',', out);
+    else if (decimals < 0)
+        fprintf(out, ",%.6g", v);
+    else
+        fprintf(out, ",%.*f", decimals, v);
+}
+
+static void csv_row(FILE *out, const influence_job *job, const noc_influence_row *row, size_t rank) {
+    told t = tell(job, row);
+    const noc_emitter *e = &row->emitter;
+    const double numbers[] = { row->lux.value, row->lux.error, row->share.value, row->share.error };
+    fprintf(out, "%zu", rank);
+    csv_text(out, e->name);
+    csv_text(out, noc_emitter_kind_name(e->kind));
+    csv_text(out, e->of);
+    for (int k = 0; k < 4; k++)
+        csv_number(out, numbers[k], -1);
+    for (int k = 0; k < 3; k++)
+        csv_number(out, t.at[k], 3);
+    csv_number(out, row->distance, 2);
+    csv_number(out, e->lumens, -1);
+    csv_number(out, t.kelvin, 0);
+    csv_text(out, e->inferred ? "inferred" : t.lamp ? "mapped" : "");
+    csv_text(out, t.lamp ? t.lamp->street : "");
+    csv_text(out, t.lamp ? t.lamp->file : "");
+    csv_text(out, t.lamp ? t.lamp->profile : "");
+    putc('\n', out);
+}
+
+static void csv_rest(FILE *out, const char *kind, noc_estimate lux, noc_estimate share) {
+    fprintf(out, ",\"\",\"%s\",\"\",%.6g,%.6g,%.6g,%.6g,,,,,,,\"\",\"\",\"\",\"\"\n", kind, lux.value, lux.error,
+            share.value, share.error);
+}
+
+noc_status influence_write_csv(influence_job *job) {
+    FILE *out = fopen(job->args->csv, "w");
+    if (!out) {
+        cli_error("%s: cannot be written", job->args->csv);
+        return NOC_ERR_IO;
+    }
+    fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile\n",
+          out);
+    for (size_t i = 0; i < job->count; i++)
+        csv_row(out, job, &job->rows[i], i + 1);
+    csv_rest(out, "sky", job->sum.sky, job->sum.sky_share);
+    csv_rest(out, "all", job->sum.lux, (noc_estimate){ 1, 0 });
+    bool bad = ferror(out);
+    if (fclose(out) || bad) {
+        cli_error("%s: not all of it could be written", job->args->csv);
+        return NOC_ERR_IO;
+    }
+    return NOC_OK;
+}

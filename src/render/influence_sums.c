@@ -1,0 +1,224 @@
+/* What a ranking has found: sums of batches, and the estimates and errors that follow from them. */
+#include "render/influence.h"
+
+#include <math.h>
+
+/* ---- sums ---- */
+
+static size_t slot_of(const ranking_sums *s, uint32_t emitter) {
+    size_t at = (emitter * (size_t)0x9e3779b97f4a7c15u >> 32) & (s->cap - 1);
+    while (s->emitter[at] != NOC_NO_EMITTER && s->emitter[at] != emitter)
+        at = (at + 1) & (s->cap - 1);
+    return at;
+}
+
+static bool grow(ranking_sums *s) {
+    size_t cap = s->cap ? s->cap * 2 : 64;
+    ranking_sums more = { noc_alloc(cap * sizeof(*more.emitter)), noc_alloc(cap * sizeof(*more.value)), s->len, cap };
+    if (!more.emitter || !more.value) {
+        noc_sums_free(&more);
+        return false;
+    }
+    memset(more.emitter, 0xff, cap * sizeof(*more.emitter));
+    for (size_t i = 0; i < s->cap; i++)
+        if (s->emitter[i] != NOC_NO_EMITTER) {
+            size_t to = slot_of(&more, s->emitter[i]);
+            more.emitter[to] = s->emitter[i];
+            more.value[to] = s->value[i];
+        }
+    noc_sums_free(s);
+    *s = more;
+    return true;
+}
+
+bool noc_sums_add(ranking_sums *s, uint32_t emitter, double value) {
+    if (4 * (s->len + 1) > 3 * s->cap && !grow(s))
+        return false;
+    size_t at = slot_of(s, emitter);
+    if (s->emitter[at] == NOC_NO_EMITTER) {
+        s->emitter[at] = emitter;
+        s->value[at] = 0;
+        s->len++;
+    }
+    s->value[at] += value;
+    return true;
+}
+
+double noc_sums_get(const ranking_sums *s, uint32_t emitter) {
+    size_t at = s->cap ? slot_of(s, emitter) : 0;
+    return s->cap && s->emitter[at] == emitter ? s->value[at] : 0;
+}
+
+void noc_sums_free(ranking_sums *s) {
+    free(s->emitter);
+    free(s->value);
+    *s = (ranking_sums){ 0 };
+}
+
+/* ---- estimates ---- */
+
+/* Means over a batch's samples. */
+typedef struct spread {
+    double part[RANKING_BATCHES];
+} spread;
+
+static double samples_of(const noc_ranking *r) { return (double)r->rounds * (r->point ? 1 : RANKING_POINTS); }
+
+static noc_estimate mean_of(const spread *s) {
+    double mean = 0, squares = 0;
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        mean += s->part[b] / RANKING_BATCHES;
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        squares += (s->part[b] - mean) * (s->part[b] - mean);
+    return (noc_estimate){ mean, sqrt(squares / (RANKING_BATCHES * (RANKING_BATCHES - 1.0))) };
+}
+
+/* The ratio of two means, and its error by the differences from it: batches that are bright in both say nothing. */
+static noc_estimate ratio_of(const spread *s, const spread *of) {
+    double whole = mean_of(of).value;
+    if (!(whole > 0))
+        return (noc_estimate){ 0, 0 };
+    noc_estimate share = { mean_of(s).value / whole, 0 };
+    spread rest;
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        rest.part[b] = s->part[b] - share.value * of->part[b];
+    share.error = mean_of(&rest).error / whole;
+    return share;
+}
+
+static spread spread_of(const noc_ranking *r, uint32_t emitter) {
+    spread s;
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        s.part[b] = noc_sums_get(&r->batch[b].sums, emitter) / samples_of(r);
+    return s;
+}
+
+typedef struct totals {
+    spread all, sky, luminance;
+} totals;
+
+static totals totals_of(const noc_ranking *r) {
+    totals t;
+    for (int b = 0; b < RANKING_BATCHES; b++) {
+        t.all.part[b] = r->batch[b].all / samples_of(r);
+        t.sky.part[b] = r->batch[b].sky / samples_of(r);
+        t.luminance.part[b] = r->batch[b].luminance / samples_of(r);
+    }
+    return t;
+}
+
+/* What each emitter brought in all; NULL: no memory. *found: how many brought anything. */
+static double *sum_emitters(const noc_ranking *r, size_t *found) {
+    double *sum = noc_calloc(NOC_MAX(r->emitters.all.len, 1), sizeof(*sum));
+    *found = 0;
+    for (int b = 0; b < RANKING_BATCHES && sum; b++) {
+        const ranking_sums *s = &r->batch[b].sums;
+        for (size_t i = 0; i < s->cap; i++)
+            if (s->emitter[i] != NOC_NO_EMITTER) {
+                *found += sum[s->emitter[i]] == 0;
+                sum[s->emitter[i]] += s->value[i];
+            }
+    }
+    return sum;
+}
+
+noc_status noc_ranking_error(const noc_ranking *r, double *error) {
+    size_t found, best = 0;
+    double *sum = sum_emitters(r, &found);
+    *error = 0;
+    if (!sum)
+        return noc_no_memory(r->view->log, "influence");
+    for (size_t i = 1; i < r->emitters.all.len; i++)
+        best = sum[i] > sum[best] ? i : best;
+    if (found) {
+        totals t = totals_of(r);
+        spread s = spread_of(r, (uint32_t)best);
+        noc_estimate share = ratio_of(&s, &t.all);
+        *error = share.error / share.value;
+    }
+    free(sum);
+    return NOC_OK;
+}
+
+/* ---- what is told ---- */
+
+typedef struct order {
+    double value;
+    uint32_t emitter;
+} order;
+
+static int strongest_first(const void *a, const void *b) {
+    const order *x = a, *y = b;
+    if (x->value != y->value)
+        return x->value > y->value ? -1 : 1;
+    return x->emitter < y->emitter ? -1 : x->emitter > y->emitter;
+}
+
+/* Those that brought anything, the strongest first; NULL: no memory. */
+static order *order_emitters(const noc_ranking *r, size_t *found) {
+    double *sum = sum_emitters(r, found);
+    order *o = sum ? noc_alloc(NOC_MAX(*found, 1) * sizeof(*o)) : NULL;
+    size_t n = 0;
+    for (size_t i = 0; i < r->emitters.all.len && o; i++)
+        if (sum[i] > 0)
+            o[n++] = (order){ sum[i], (uint32_t)i };
+    free(sum);
+    if (o)
+        qsort(o, n, sizeof(*o), strongest_first);
+    return o;
+}
+
+static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, size_t emitters,
+                     noc_influence_sum *sum) {
+    *sum = (noc_influence_sum){ .lux = mean_of(&t->all),
+                                .sky = mean_of(&t->sky),
+                                .sky_share = ratio_of(&t->sky, &t->all),
+                                .rest = mean_of(rest),
+                                .rest_share = ratio_of(rest, &t->all),
+                                .luminance = mean_of(&t->luminance),
+                                .emitters = emitters,
+                                .samples = (uint64_t)samples_of(r) * RANKING_BATCHES,
+                                .seconds = r->seconds,
+                                .restarts = r->restarts };
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        sum->rays += r->batch[b].rays;
+}
+
+noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count, size_t *found,
+                           noc_influence_sum *sum) {
+    if (!r || (count && !rows))
+        return noc_null(r ? r->view->log : NULL, __func__);
+    if (!r->rounds)
+        return noc_error(r->view->log, NOC_ERR_ARGUMENT, "influence: nothing was estimated yet");
+    size_t emitters;
+    order *o = order_emitters(r, &emitters);
+    if (!o)
+        return noc_no_memory(r->view->log, "influence");
+    noc_region_info info;
+    noc_region_get_info(r->region, &info);
+    totals t = totals_of(r);
+    spread rest;
+    for (int b = 0; b < RANKING_BATCHES; b++)
+        rest.part[b] = t.all.part[b] - t.sky.part[b];
+    count = NOC_MIN(count, emitters);
+    noc_scene_lock_read(r->view->scene);
+    const noc_scene *scene = r->lights == r->view->scene->versions.lights ? r->view->scene : NULL;
+    for (size_t i = 0; i < count; i++) {
+        spread s = spread_of(r, o[i].emitter);
+        rows[i] = (noc_influence_row){ .lux = mean_of(&s), .share = ratio_of(&s, &t.all) };
+        noc_emitter_describe(scene, &r->emitters, o[i].emitter, &rows[i].emitter);
+        double d2 = 0;
+        for (int k = 0; k < 3; k++)
+            d2 += (rows[i].emitter.centre[k] - info.centre[k]) * (rows[i].emitter.centre[k] - info.centre[k]);
+        rows[i].distance = scene ? sqrt(d2) : NAN;
+        for (int b = 0; b < RANKING_BATCHES; b++)
+            rest.part[b] -= s.part[b];
+    }
+    noc_scene_unlock_read(r->view->scene);
+    free(o);
+    if (found)
+        *found = count;
+    if (sum)
+        fill_sum(r, &t, &rest, emitters, sum);
+    return NOC_OK;
+}

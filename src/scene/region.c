@@ -1,0 +1,124 @@
+/* Regions: what is asked about. */
+#include "scene/region.h"
+
+#include <math.h>
+
+noc_region *noc_region_create(noc_log *log) {
+    noc_region *r = noc_calloc(1, sizeof(*r));
+    if (!r) {
+        noc_no_memory(log, "region");
+        return NULL;
+    }
+    r->log = log;
+    return r;
+}
+
+void noc_region_destroy(noc_region *r) {
+    if (!r)
+        return;
+    array_free(&r->patches);
+    free(r);
+}
+
+static const char *patch_fault(const noc_patch *p) {
+    double length = 0;
+    for (int k = 0; k < 3; k++) {
+        if (!(fabsf(p->p[k]) < 1e7f) || !(fabsf(p->u[k]) < 1e7f) || !(fabsf(p->v[k]) < 1e7f))
+            return "its place is not finite, or further than 10 000 km from the origin";
+        length += (double)p->n[k] * p->n[k];
+    }
+    if (!(fabs(length - 1) < 1e-3))
+        return "its normal is no unit vector";
+    return p->weight > 0 && p->weight < 1e30f ? NULL : "its weight is not above 0";
+}
+
+noc_status noc_region_add(noc_region *r, const noc_patch *patches, size_t count) {
+    if (!r || (!patches && count))
+        return noc_null(r ? r->log : NULL, __func__);
+    for (size_t i = 0; i < count; i++) {
+        const char *fault = patch_fault(&patches[i]);
+        if (fault)
+            return noc_error(r->log, NOC_ERR_ARGUMENT, "region: part %zu: %s", i, fault);
+    }
+    return array_append(&r->patches, patches, count) ? NOC_OK : noc_no_memory(r->log, "region");
+}
+
+static void middle(const noc_patch *p, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = p->p[k] + ((double)p->u[k] + p->v[k]) / 3;
+}
+
+void noc_region_get_info(const noc_region *r, noc_region_info *info) {
+    if (!info)
+        return;
+    *info = (noc_region_info){ 0 };
+    if (!r)
+        return;
+    info->patches = r->patches.len;
+    info->point = r->patches.len == 1 && noc_patch_is_point(&r->patches.data[0]);
+    for (size_t i = 0; i < r->patches.len; i++) {
+        const noc_patch *p = &r->patches.data[i];
+        double at[3];
+        middle(p, at);
+        info->weight += p->weight;
+        for (int k = 0; k < 3; k++)
+            info->centre[k] += p->weight * at[k];
+    }
+    for (int k = 0; k < 3 && info->weight > 0; k++)
+        info->centre[k] /= info->weight;
+}
+
+typedef struct sort_key {
+    uint64_t key;
+    uint32_t patch;
+} sort_key;
+
+static int by_key(const void *a, const void *b) {
+    const sort_key *x = a, *y = b;
+    if (x->key != y->key)
+        return x->key < y->key ? -1 : 1;
+    return x->patch < y->patch ? -1 : x->patch > y->patch;
+}
+
+/* 20 bits a coordinate, one after the other from the highest on. */
+static uint64_t place_key(const double at[3], const double lo[3], double size) {
+    uint64_t key = 0, cell[3];
+    for (int k = 0; k < 3; k++)
+        cell[k] = (uint64_t)NOC_CLAMP((at[k] - lo[k]) / size * 0x1p20, 0, 0xfffff);
+    for (int bit = 19; bit >= 0; bit--)
+        for (int k = 0; k < 3; k++)
+            key = key << 1 | (cell[k] >> bit & 1);
+    return key;
+}
+
+noc_region *noc_region_sorted(const noc_region *from) {
+    noc_region *r = noc_region_create(NULL);
+    size_t n = from->patches.len;
+    sort_key *keys = noc_alloc(NOC_MAX(n, 1) * sizeof(*keys));
+    if (!r || !keys || !array_reserve(&r->patches, NOC_MAX(n, 1))) {
+        noc_region_destroy(r);
+        free(keys);
+        return NULL;
+    }
+    double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 1e-3;
+    for (size_t i = 0; i < n; i++) {
+        double at[3];
+        middle(&from->patches.data[i], at);
+        for (int k = 0; k < 3; k++) {
+            lo[k] = fmin(lo[k], at[k]);
+            hi[k] = fmax(hi[k], at[k]);
+        }
+    }
+    for (int k = 0; k < 3 && n; k++)
+        size = fmax(size, hi[k] - lo[k]);
+    for (size_t i = 0; i < n; i++) {
+        double at[3];
+        middle(&from->patches.data[i], at);
+        keys[i] = (sort_key){ place_key(at, lo, size), (uint32_t)i };
+    }
+    qsort(keys, n, sizeof(*keys), by_key);
+    for (size_t i = 0; i < n; i++)
+        r->patches.data[r->patches.len++] = from->patches.data[keys[i].patch];
+    free(keys);
+    return r;
+}

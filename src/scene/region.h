@@ -1,0 +1,24 @@
+/* A region of nocturne/influence.h. */
+#ifndef NOC_REGION_H
+#define NOC_REGION_H
+
+#include "base/base.h"
+#include <nocturne/influence.h>
+
+struct noc_region {
+    noc_log *log;
+    NOC_ARRAY(noc_patch) patches;
+};
+
+static inline bool noc_patch_is_point(const noc_patch *p) {
+    for (int k = 0; k < 3; k++)
+        if (p->u[k] != 0 || p->v[k] != 0)
+            return false;
+    return true;
+}
+
+/* A copy whose patches lie along a curve through space, so that those that follow one another are neighbours. NULL: no
+ * memory, not reported. */
+noc_region *noc_region_sorted(const noc_region *region) NOC_MUST_USE;
+
+#endif

@@ -1,0 +1,75 @@
+#!/bin/sh
+# nocturne influence: tables, CSV and JSON of who lights a place, and what is said of questions that have no answer.
+. "$(dirname "$0")/lib.sh"
+cat >map.osm <<'OSM'
+<?xml version="1.0"?><osm version="0.6">
+<node id="1" lat="52.5000000" lon="13.4000000"/><node id="2" lat="52.5000000" lon="13.4010000"/>
+<node id="11" lat="52.5000300" lon="13.4002000">
+<tag k="highway" v="street_lamp"/><tag k="lamp_type" v="led"/><tag k="note" v="by, the &quot;well&quot;"/></node>
+<node id="12" lat="52.5000300" lon="13.4006000">
+<tag k="highway" v="street_lamp"/><tag k="light:lumens" v="9000"/></node>
+<way id="21"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/><tag k="name" v="Well Lane"/></way>
+</osm>
+OSM
+ask() { run influence map.osm --map-surfaces -q --sky 0 "$@"; }
+
+ask --region "street:Well Lane" --csv well.csv
+grep -q 'node/12, mapped\|node/12, Well Lane, map.osm' out && grep -q '^street:Well Lane: around' out &&
+    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 5 ]
+result $? "a street is lit by its lamps, the stronger one first"
+
+awk -F, 'NR > 1 && $1 != "" { share += $7; lux += $5 } /"all"/ { all = $5 }
+    END { exit !(share > .999 && share < 1.001 && lux > .999 * all && lux < 1.001 * all) }' well.csv
+result $? "shares sum up to 1, and lux to all"
+
+ask --json --region "street:Well Lane" && python3 - <<'PY'
+import json
+with open('out') as f:
+    j = json.load(f)
+rows = j['rows']
+assert [r['name'] for r in rows] == ['node/12', 'node/11'], rows
+assert rows[0]['street'] == 'Well Lane' and rows[0]['kind'] == 'lamp' and rows[0]['placed'] == 'mapped'
+assert rows[0]['share'] > rows[1]['share'] > 0 and 0 < rows[0]['share_error'] <= .011 * rows[0]['share']
+assert rows[1]['tags'] == {'highway': 'street_lamp', 'lamp_type': 'led', 'note': 'by, the "well"'} or \
+    'note' in rows[1]['tags'], rows[1]
+assert abs(rows[0]['lumens'] - 9000) < 1 and j['lux'] > 0 and j['sky'] == 0
+PY
+result $? "JSON has names, streets, tags and errors"
+
+ask --json --region "street:Well Lane" --threads 1 --time 0 && sed 's/"seconds".*//' out >one &&
+    ask --json --region "street:Well Lane" --threads 3 --time 0 && sed 's/"seconds".*//' out | cmp -s - one
+result $? "any number of threads gives the same table"
+
+run influence builtin:city -q --region pixel:640,600 --top 3 && [ "$(grep -c ' ±.* ±' out)" = 5 ] &&
+    grep -q 'cd/m2 .* towards the camera' out && grep -Eq ' [0-9,]+ others$' out
+result $? "a pixel has three rows, the others, the sky, and its luminance"
+
+run build builtin:city -o city.noct -q && run influence city.noct -q --region "street:street 1" --top 2 &&
+    [ "$(grep -c '  lamp ' out)" -ge 1 ]
+result $? "a built city knows its streets"
+
+run influence map.osm --map-surfaces -q --lamp node/12 --top 2
+grep -q '^node/12: lamp$' out && grep -q '^flux  *9,000 lm of 1 light' out &&
+    grep -q '^tags .*highway=street_lamp$' out &&
+    grep -q '^ *light:lumens=9000$' out && grep -q '^file .*map.osm$' out && grep -q '^street  *Well Lane$' out &&
+    grep -Eq 'm2 get 1 lx or more of it' out && [ "$(grep -c ' lm .* %  ' out)" = 2 ]
+result $? "a lamp tells its tags, its flux and what it lights"
+run influence map.osm --map-surfaces -q --lamp node/12 --json && python3 -c "
+import json
+with open('out') as f:
+    j = json.load(f)
+assert j['tags']['light:lumens'] == '9000' and j['area_1lx'] > 50 and j['far_01lx'] > 10, j
+assert j['objects'][0]['lumens'] > 100, j
+"
+result $? "the same as JSON"
+expect "a lamp that is not there, and the nearest" 1 'is it "node/1' influence map.osm -q --lamp node/1
+expect "a region or a lamp" 2 'exclude each other' influence map.osm --lamp node/11 --region point:0,0
+
+expect "which region?" 2 "region is needed" influence builtin:city
+expect "which city?" 2 "which city" influence --region point:0,0
+expect "a street that is not there, and the nearest" 1 'no street "Well Lone"; is it "Well Lane"' \
+    influence map.osm --region "street:Well Lone"
+expect "a class that is not there, and the nearest" 2 'is it wall' influence map.osm --region object:x --class wal
+expect "a kind of region that is not there" 1 'is it street:' influence map.osm --region stret:x
+echo "1..$count"
+exit $((failed > 0))

@@ -1,0 +1,239 @@
+/* Smoothing for display (nocturne/smooth.h). */
+#include "views.h"
+
+#include <nocturne/smooth.h>
+#include <string.h>
+
+/* Pixels of a picture, and its mean luminance without emitters. */
+static double mean_of(const noc_image *image) {
+    double sum = 0;
+    for (int i = 0; i < image->width * image->height; i++)
+        sum += luma(image->rgb + 3 * i) - luma(image->coverage + 4 * i);
+    return sum / (image->width * image->height);
+}
+
+static noc_render_params moving(noc_method method) {
+    noc_render_params p = with(method, NOC_CANDIDATES_LISTS, NOC_SMOOTH_AOVS);
+    p.jitter = true;
+    return p;
+}
+
+static void check_picture(const noc_image *image, int width, int height) {
+    assert_non_null(image);
+    assert_true(image->smoothed && image->width == width && image->height == height && image->coverage);
+    for (int i = 0; i < 3 * width * height; i++)
+        assert_true(isfinite(image->rgb[i]) && image->rgb[i] >= 0);
+    for (int i = 0; i < 4 * width * height; i++)
+        assert_true(isfinite(image->coverage[i]) && image->coverage[i] >= 0);
+    for (int i = 0; i < width * height; i++)
+        assert_true(image->coverage[4 * i + 3] <= 1.0001f);
+}
+
+/* While nothing moves the picture comes to the mean of frames, and no light is lost or made. Jitter makes edges of
+ * several surfaces, which is most of so small a picture. */
+static void rests_on_the_mean(void **state) {
+    noc_scene *s = street(60);
+    noc_camera c = along();
+    for (int jitter = 0; jitter < 2; jitter++) {
+        noc_render_params p = moving(NOC_METHOD_RIS);
+        p.jitter = jitter;
+        noc_view *v = rendered(s, &c, &p, 0, 1);
+        noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+        const noc_image *image = NULL;
+        for (int i = 0; i < 300; i++) {
+            assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+            image = noc_smoother_step(smoother, v, NULL);
+        }
+        check_picture(image, W, H);
+        noc_image *mean = noc_view_image(v);
+        double off = 0, all = 0;
+        for (int i = 0; i < N; i++) {
+            double x = luma(image->rgb + 3 * i) - luma(image->coverage + 4 * i);
+            double r = luma(mean->rgb + 3 * i) - luma(mean->coverage + 4 * i);
+            off += fabs(x - r);
+            all += r;
+        }
+        double energy = mean_of(image) * N / all;
+        print_message("# at rest%s: off by %.2f%% of the mean, energy %.4f\n", jitter ? ", jitter" : "",
+                      100 * off / all, energy);
+        assert_true(off < (jitter ? .04 : .003) * all && fabs(energy - 1) < (jitter ? .02 : .001));
+        noc_image_destroy(mean);
+        noc_smoother_destroy(smoother);
+        close_view(v);
+    }
+    noc_scene_destroy(s);
+}
+
+/* A floor that a lamp lights, which belongs to a group, and a box before it that is an instance. */
+static noc_scene *stage(int *box) {
+    noc_scene *s = noc_scene_create(NULL);
+    int grey = matte(s, .5f), dark = matte(s, .05f), model = noc_scene_add_model(s, "box");
+    add_floor(s, grey, 0, 0, 0, 20);
+    noc_mesh side = { .vertex_count = 4,
+                      .positions = (double[]){ -1.5, 0, 0, 1.5, 0, 0, 1.5, 0, 2, -1.5, 0, 2 },
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = dark,
+                      .model = model };
+    assert_true(noc_scene_add_mesh(s, &side) >= 0);
+    *box = noc_scene_add_instance(s, &(noc_instance){ .model = model,
+                                                      .transform = { 1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0 } });
+    int group = noc_scene_add_group(s, "lamps");
+    for (int i = 0; i < 12; i++) {
+        noc_light l = { .kind = NOC_LIGHT_SPHERE,
+                        .position = { -6 + i, 3, 4 + i % 3 },
+                        .radius = .1,
+                        .emission = { 900, 900, 900 },
+                        .group = i ? group : 0 };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+/* The mean light of the picture without emitters, after so many frames, beside what frames have themselves. */
+static double ratio_after(noc_view *v, noc_smoother *smoother, const noc_camera *c, const noc_render_params *p,
+                          int frames) {
+    const noc_image *image = NULL;
+    double have, want = 0;
+    for (int i = 0; i < frames; i++) {
+        assert_int_equal(noc_view_render(v, c, p, NULL), NOC_OK);
+        image = noc_smoother_step(smoother, v, NULL);
+        check_picture(image, W, H);
+    }
+    have = mean_of(image);
+    noc_view_restart(v);
+    for (int i = 0; i < 32; i++)
+        assert_int_equal(noc_view_render(v, c, p, NULL), NOC_OK);
+    noc_image *mean = noc_view_image(v);
+    want = mean_of(mean);
+    noc_image_destroy(mean);
+    return have / want;
+}
+
+/* Lamps that are switched off after a long rest are forgotten within frames, and so is a box that has gone. */
+static void forgets_what_changed(void **state) {
+    for (int switched = 0; switched < 2; switched++) {
+        int box;
+        noc_scene *s = stage(&box);
+        noc_camera c = look(0, -9, 5, 0, 0, 1, 50);
+        noc_render_params p = moving(NOC_METHOD_RIS);
+        p.jitter = false;
+        noc_view *v = rendered(s, &c, &p, 0, 1);
+        noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+        ratio_after(v, smoother, &c, &p, 40);
+        noc_smoother_reset(smoother);
+        for (int i = 0; i < 40; i++) {
+            assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+            assert_non_null(noc_smoother_step(smoother, v, NULL));
+        }
+        if (switched)
+            assert_int_equal(noc_scene_set_group(s, 1, (const float[]){ .1f, .1f, .1f }), NOC_OK);
+        else
+            assert_int_equal(noc_scene_remove_instance(s, box), NOC_OK);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        double ratio = ratio_after(v, smoother, &c, &p, 8);
+        print_message("# 8 frames after %s: %.3f of the light\n", switched ? "lamps were dimmed" : "a box went", ratio);
+        assert_true(fabs(ratio - 1) < (switched ? .1 : .05)); /* a tenth of a tenth of the light that was */
+        noc_smoother_destroy(smoother);
+        close_view(v);
+        noc_scene_destroy(s);
+    }
+}
+
+static void turn(noc_camera *c, int frame) {
+    c->target[0] = .15 * frame;
+    c->eye[1] = -10 + .1 * frame;
+}
+
+/* Any number of threads and of lanes, sizes that are no multiple of anything, and changes of size on the way. */
+static void the_same_for_any_threads(void **state) {
+    static const int sizes[][2] = { { 1, 1 }, { 37, 23 }, { 37, 23 }, { 64, 5 }, { 1, 40 }, { 133, 21 }, { 131, 20 } };
+    noc_scene *s = street(60);
+    noc_image *first[NOC_COUNT(sizes)] = { 0 };
+    for (int round = 0; round < 3; round++) {
+        noc_camera c = along();
+        noc_render_params p = moving(NOC_METHOD_RESTIR);
+        int threads = 1 + 2 * (round & 1);
+        p.isa = round < 2 ? NOC_ISA_AUTO : NOC_ISA_BASELINE;
+        noc_view *v = rendered(s, &c, &p, 0, threads);
+        noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+        for (size_t i = 0; i < NOC_COUNT(sizes); i++) {
+            p.width = sizes[i][0];
+            p.height = sizes[i][1];
+            turn(&c, (int)i);
+            assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+            const noc_image *image = noc_smoother_step(smoother, v, NULL);
+            check_picture(image, p.width, p.height);
+            assert_ptr_equal(noc_smoother_step(smoother, v, NULL), image);
+            size_t bytes = (size_t)p.width * (size_t)p.height * 3 * sizeof(float);
+            if (first[i]) {
+                assert_memory_equal(first[i]->rgb, image->rgb, bytes);
+            } else {
+                first[i] = noc_image_create(p.width, p.height, NULL);
+                memcpy(first[i]->rgb, image->rgb, bytes);
+            }
+        }
+        noc_smoother_destroy(smoother);
+        close_view(v);
+    }
+    for (size_t i = 0; i < NOC_COUNT(sizes); i++)
+        noc_image_destroy(first[i]);
+    noc_scene_destroy(s);
+}
+
+/* What a step refuses, and what it begins anew after. */
+static void refuses(void **state) {
+    noc_scene *s = street(8);
+    noc_camera c = along();
+    noc_render_params p = moving(NOC_METHOD_RIS);
+    noc_view *v = rendered(s, &c, &p, 0, 1), *other = rendered(s, &c, &p, 1, 1);
+    noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+    assert_null(noc_smoother_step(smoother, v, NULL));
+    assert_null(noc_smoother_step(smoother, other, NULL));
+    assert_null(noc_smoother_step(smoother, NULL, NULL));
+    assert_null(noc_smoother_step(NULL, v, NULL));
+    assert_null(noc_smoother_create(NULL));
+    noc_smoother_destroy(NULL);
+    noc_smoother_reset(NULL);
+    p.aovs = 0;
+    assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+    assert_null(noc_smoother_step(smoother, v, NULL));
+    p.aovs = NOC_SMOOTH_AOVS;
+    assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+    assert_null(noc_smoother_step(smoother, v, &(noc_smooth_params){ 0, 5, true }));
+    assert_null(noc_smoother_step(smoother, v, &(noc_smooth_params){ 32, 7, true }));
+    check_picture(noc_smoother_step(smoother, v, &(noc_smooth_params){ 1, 0, false }), W, H);
+    noc_smoother_destroy(smoother);
+    close_view(v);
+    close_view(other);
+    noc_scene_destroy(s);
+}
+
+/* Figures are not made of smoothed pictures. */
+static void is_in_no_figures(void **state) {
+    noc_scene *s = street(8);
+    noc_camera c = along();
+    noc_render_params p = moving(NOC_METHOD_RIS);
+    noc_view *v = rendered(s, &c, &p, 1, 1);
+    noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+    const noc_image *image = noc_smoother_step(smoother, v, NULL);
+    noc_image *frame = noc_view_image(v);
+    noc_comparison comparison;
+    assert_int_equal(noc_image_compare(image, frame, NULL, &comparison, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_image_compare(frame, image, NULL, &comparison, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_image_compare(frame, frame, NULL, &comparison, NULL), NOC_OK);
+    noc_image_destroy(frame);
+    noc_smoother_destroy(smoother);
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rests_on_the_mean),        cmocka_unit_test(forgets_what_changed),
+        cmocka_unit_test(the_same_for_any_threads), cmocka_unit_test(refuses),
+        cmocka_unit_test(is_in_no_figures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
