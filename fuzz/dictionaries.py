@@ -38,6 +38,7 @@ dictionaries = {
     "recipe": (["recipe/*.c", "render/options.c", "scene/material.c"],
                ["nocturne: 1\n", "inputs: [", "cameras:\n  ", "materials:\n  ", ": {", "}, ", "---\n", "&a ", "*a",
                 "<<: ", "!!", "|\n", ">\n", "? ", "%YAML 1.1\n", "builtin:mess", "../"]),
+    "viewer": (["viewer/wire.c"], ["\"t\":\"", "\":[", "null", "true", "1e999", "-0", "\\ud800", "\\u0000", "[[0,0],"]),
 }
 
 

@@ -502,6 +502,37 @@ put("pipeline", "two-cities", parts(whole, degrees))
 put("pipeline", "osm", parts(osm, whole))
 put("pipeline", "zip", parts(gzip.compress(whole.encode(), mtime=0), zipped(lamps__geojson=lamps)))
 
+# ---- messages to the viewer ----
+
+camera = {"eye": [1, 2, 3], "target": [4, 5, 6], "fov": 50}
+messages = {
+    "begin": [{"t": "hello", "width": 1280, "height": 720}, {"t": "layout", "name": "methods"},
+              {"t": "watch", "on": False}, {"t": "navigate", "mode": "walk", "speed": 2},
+              {"t": "ack", "pane": 5, "n": 7}],
+    "inputs": [{"t": "input", "n": n, "seconds": 0.02, "keys": keys, "turn": [0.1, -0.2], "pan": [0, 0], "zoom": -1,
+                "at": [0.5, 0.25]} for n, keys in enumerate(([], ["forward", "fast"], ["forward", "fast"], ["up"]))],
+    "go": [{"t": "camera", "name": "street", "n": 3}, {"t": "camera", **camera},
+           {"t": "jump", "x": 0.5, "y": 0.5, "pane": 0, "n": 4}],
+    "set": [{"t": "set", "pane": -1, "name": "method", "value": "restir"},
+            {"t": "world", "name": "group.lamps", "value": "0.3,2200K"}],
+    "ask": [{"t": "ask", "id": 1, "what": "pixel", "pane": 0, "x": 0.5, "y": 0.5}, {"t": "cancel", "id": 1},
+            {"t": "ask", "id": 2, "what": "region", "rect": [0, 0, 1, 1]},
+            {"t": "ask", "id": 3, "what": "region", "polygon": [[0, 0], [1, 0], [0, 1e3]]},
+            {"t": "ask", "id": 4, "what": "region", "object": "DEBY_1"}, {"t": "ask", "id": 5, "what": "lights"},
+            {"t": "ask", "id": 6, "what": "lamp", "light": 12},
+            {"t": "ask", "id": 7, "what": "align", "aspect": 1.5,
+             "pairs": [{"photo": [0, 1], "place": [1, 2, 3]}] * 4}],
+    "save": [{"t": "save", "id": 1, "what": "png", "pane": 1}, {"t": "save", "id": 2, "what": "csv", "of": 3},
+             {"t": "save", "id": 3, "what": "recipe", "cameras": [{"name": "square", **camera}]}],
+    "wrong": [{"t": "hello", "width": 0, "height": 1e9}, {"t": "input"}, {"t": 3}, [], {"t": "set", "name": 1},
+              {"t": "camera", "eye": [1, 2, 3], "target": [1, 2, 3], "fov": 50}, {"t": "ask", "id": -1, "what": "all"}],
+}
+for name, said in messages.items():
+    put("viewer", name, "\n".join(map(json.dumps, said)))
+put("viewer", "deep", '{"t":"hello","x":' + "[" * 3000 + "]" * 3000 + "}")
+put("viewer", "text", b'{"t":"set","name":"\xff\xfe","value":"\\ud800"}\n'
+                      b'{"t":"set","name":"a\\u0000b","value":"\xc3\xa4"}')
+
 # ---- the library and its helper ----
 
 for corpus in "wire", "request", "noct":

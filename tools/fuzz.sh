@@ -42,6 +42,7 @@ noct noct 131072 - -
 pipeline pipeline 32768 citygml -
 wire wire 16384 - -
 request request 4096 - -
+viewer viewer 8192 viewer -
 '
 
 # All of a corpus' runs: executions, processor time, coverage (edges that an input reaches, of the last run), findings.

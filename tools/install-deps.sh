@@ -51,6 +51,7 @@ need libassimp-dev "OBJ meshes" module assimp
 need libseccomp-dev "a fence around the program that reads OBJ and map files" module libseccomp
 need libopenexr-dev "EXR pictures" module OpenEXR
 need libturbojpeg0-dev "JPEG textures" module libturbojpeg
+need libwebsockets-dev "nocturne view, the viewer in a browser" module libwebsockets
 need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip
 need zlib1g-dev "gzipped city models" module zlib
@@ -61,6 +62,7 @@ fuzzer() {
     done
     return 1
 }
+browser() { have chromium || have chromium-browser || have google-chrome; }
 formatter() { have clang-format || have clang-format-14; }
 if [ "$purpose" = fuzz ]; then
     need "clang libclang-rt-14-dev llvm-14" "libFuzzer and the sanitizers" fuzzer
@@ -75,6 +77,7 @@ if [ "$purpose" = check ] || [ "$purpose" = coverage ]; then
     need glslang-tools "tests that the estimator compiles as GLSL" have glslangValidator
     need libvulkan-dev "runs that GLSL in tests" module vulkan
     need mesa-vulkan-drivers "a Vulkan device in software, for those tests" icd
+    need chromium "drives the viewer's page in tests" browser
 fi
 [ -n "$missing" ] || exit 0
 

@@ -1,5 +1,6 @@
 /* nocturne: pictures and figures of cities at night. */
 #include "cli.h"
+#include "viewer/viewer.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-const cli_command *const cli_commands[] = { &cli_render, &cli_influence,  &cli_build, &cli_info,
+const cli_command *const cli_commands[] = { &cli_render, &cli_view,    &cli_influence,  &cli_build, &cli_info,
                                             &cli_init,   &cli_compare, &cli_experiment, NULL };
 
 const cli_command *cli_find_command(const char *name) {
@@ -98,7 +99,8 @@ int main(int argc, char **argv) {
     }
     const char *name = argv[1];
     if (!strcmp(name, "--version")) {
-        printf("nocturne %s (%s)\nisolation of foreign readers: %s\n", noc_version(), noc_features(), noc_isolation());
+        printf("nocturne %s (%s, %s)\nisolation of foreign readers: %s\n", noc_version(), noc_features(),
+               viewer_features(), noc_isolation());
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
     if (!strcmp(name, "help") || !strcmp(name, "--help") || !strcmp(name, "-h"))

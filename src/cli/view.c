@@ -1,0 +1,225 @@
+/* nocturne view: the city in a browser. */
+#include "render.h"
+#include "viewer/viewer.h"
+
+#include <limits.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Arguments of render that view takes too, and its own. */
+typedef struct view_args {
+    render_args render;
+    const char *address, *token;
+    int port, clients;
+    bool open;
+} view_args;
+
+#define A view_args
+static const noc_option own_options[] = {
+    { "port", "Viewer", NOC_OPTION_INT, offsetof(A, port), 0, 65535, NULL, "",
+      "port to listen at; 0 = any that is free" },
+    { "address", "Viewer", NOC_OPTION_TEXT, offsetof(A, address), 0, 0, NULL, "ADDRESS",
+      "address to listen at; 127.0.0.1 is reached from this machine alone" },
+    { "clients", "Viewer", NOC_OPTION_INT, offsetof(A, clients), 1, 64, NULL, "", "browsers at once, at most" },
+    { "token", "Viewer", NOC_OPTION_TEXT, offsetof(A, token), 0, 0, NULL, "TEXT",
+      "secret that the link has, 16 or more letters and digits; else a random one" },
+    { "open", "Viewer", NOC_OPTION_BOOL, offsetof(A, open), 0, 1, NULL, "",
+      "open the link in a browser of this machine" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+
+static const noc_option estimator_options[] = {
+    NOC_OPTION_PRESET(render_args, "Estimator"),
+    { "threads", "Viewer", NOC_OPTION_INT, offsetof(render_args, threads), 0, 1024, NULL, "",
+      "threads; 0 = one a core" },
+    { NULL },
+};
+static const noc_option *of_estimator(void) { return estimator_options; }
+
+static int run(void *arguments);
+
+static const view_args defaults = {
+    .render = { .command = &cli_view,
+                .preset = NOC_PRESET_INTERACTIVE,
+                .camera = noc_camera_default_params(),
+                .exposure = "auto",
+                .render = noc_render_default_params(),
+                .display = noc_display_default_params(),
+                .import = noc_import_default_params(),
+                .builtin = noc_builtin_default_params() },
+    .address = "127.0.0.1",
+    .port = 8017,
+    .clients = 8,
+};
+/* --exposure says both; the page says how large its picture is */
+static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL };
+static const char *const by_page[] = { "width", "height", NULL };
+
+const cli_command cli_view = {
+    "view",
+    "[INPUT...]",
+    "Shows a city in a browser, to walk through it and to see who lights what. Without inputs the built-in city.",
+    "Examples\n"
+    "  nocturne view\n"
+    "  nocturne view city.yaml --open\n"
+    "  nocturne view city.gml lamps.geojson --view aerial --port 0\n"
+    "It prints a link for the browser. From another machine:\n"
+    "  ssh -L 8017:127.0.0.1:8017 SERVER nocturne view\n"
+    "Ctrl-C ends it.\n",
+    { { options, 0, NULL },
+      { of_estimator, offsetof(A, render), NULL },
+      { cli_camera_options, offsetof(A, render), NULL },
+      { noc_camera_options, offsetof(A, render.camera), NULL },
+      { noc_render_options, offsetof(A, render.render), by_page },
+      { cli_exposure_options, offsetof(A, render), NULL },
+      { noc_display_options, offsetof(A, render.display), by_exposure },
+      { noc_import_options, offsetof(A, render.import), NULL },
+      { noc_city_options, offsetof(A, render.builtin.city), NULL },
+      { noc_builtin_options, offsetof(A, render.builtin), NULL },
+      { cli_common_options, 0, NULL } },
+    sizeof(view_args),
+    &defaults,
+    run,
+};
+
+static int check_token(const char *token) {
+    enum { SHORTEST = 16, LONGEST = 128 };
+    size_t n = token ? strlen(token) : SHORTEST;
+    bool plain = !token || strspn(token, "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-_") == n;
+    return plain && n >= SHORTEST && n <= LONGEST
+               ? CLI_OK
+               : cli_usage(&cli_view, "--token: %d to %d letters, digits, - and _", SHORTEST, LONGEST);
+}
+
+static int check(view_args *args) {
+    render_args *render = &args->render;
+    int status = check_token(args->token);
+    status = status ? status : cli_choose_camera(render);
+    if (status)
+        return status;
+    cli_add_named(&render->common, &render->import);
+    if (!render->common.input_count)
+        render->common.inputs[render->common.input_count++] = "builtin:city";
+    return cli_check_city(render);
+}
+
+/* ---- what the viewer asks for ---- */
+
+static noc_status load(void *user, noc_scene *scene, const noc_progress *progress, noc_report **report) {
+    view_args *args = user;
+    noc_import_params *import = &args->render.import;
+    import->each_lamp = true; /* for the cards of lamps */
+    bool wet = import->wet;   /* rain is the viewer's, who can end it */
+    import->wet = false;
+    noc_status status = cli_load_city(&args->render, scene, progress, report);
+    import->wet = wet;
+    return status;
+}
+
+/* As render does, of a picture that is there. */
+static noc_status write_picture(void *user, const viewer_picture *p, const char *path, noc_log *log) {
+    const view_args *args = user;
+    render_args told = args->render;
+    told.command = &cli_render;
+    told.output = path;
+    told.render = p->render;
+    told.display = p->display;
+    told.range = p->channel;
+    told.show = p->show;
+    told.preset = p->preset;
+    told.import = *p->import;
+    told.camera = (noc_camera_params){ .eye = "", .target = "" };
+    render_job job = { .args = &told,
+                       .log = log,
+                       .scene = p->scene,
+                       .view = p->view,
+                       .report = (noc_report *)p->report,
+                       .camera = p->camera,
+                       .file = path,
+                       .averaged = (int)(p->frames < INT_MAX ? p->frames : INT_MAX) };
+    noc_scene_get_info(p->scene, &job.scene_info);
+    noc_status status = cli_write_picture(&job);
+    cli_drop_view(&job);
+    noc_image_destroy(job.image);
+    return status;
+}
+
+static bool ended(void *user) {
+    (void)user;
+    return cli_interrupted();
+}
+
+static void say(void *user, noc_log_level level, const char *text) {
+    (void)user;
+    cli_error("%s%s", level == NOC_LOG_WARN ? "warning: " : "", text);
+}
+
+static void open_browser(const char *link) {
+    char program[] = "xdg-open", *copy = cli_format("%s", link), *words[] = { program, copy, NULL };
+    pid_t child;
+    if (posix_spawnp(&child, program, NULL, NULL, words, environ))
+        cli_error("warning: --open: xdg-open is not there; open the link by hand");
+    free(copy);
+}
+
+static void listening(void *user, const char *link) {
+    const view_args *args = user;
+    cli_progress_clear();
+    printf("%s\n", link);
+    fflush(stdout);
+    if (args->open)
+        open_browser(link);
+}
+
+/* Options of the words, each with the struct that it is a field of. */
+static viewer_given *list_given(view_args *args, size_t *count) {
+    const cli_args *common = &args->render.common;
+    viewer_given *given = cli_alloc(sizeof(*given) * (common->given_by_words + 1));
+    *count = 0;
+    for (size_t i = 0; i < common->given_by_words; i++)
+        for (const cli_set *set = cli_view.sets; set->table; set++)
+            for (const noc_option *o = set->table(); o->name; o++)
+                if (o == common->given[i])
+                    given[(*count)++] = (viewer_given){ o, (const char *)args + set->offset };
+    return given;
+}
+
+static int view(view_args *args, noc_log *log) {
+    const render_args *render = &args->render;
+    viewer_source source = {
+        .said = render->common.said_count ? render->common.said : render->common.inputs,
+        .said_count = render->common.said_count ? render->common.said_count : render->common.input_count,
+        .recipe = render->common.recipe,
+        .load = load,
+        .write = write_picture,
+        .user = args,
+        .import = &render->import,
+        .camera = render->camera,
+        .render = render->render,
+        .display = render->display,
+        .threads = render->threads,
+    };
+    source.given = list_given(args, &source.given_count);
+    viewer_params params = { args->address, args->port, args->clients, args->token, ended, listening, say, args };
+    noc_status status = viewer_run(&source, &params, log);
+    free((void *)source.given);
+    if (status == NOC_ERR_UNSUPPORTED)
+        cli_error("this build has no viewer: %s; build it with the Meson option -Dviewer=enabled", viewer_features());
+    return status ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+}
+
+static int run(void *arguments) {
+    view_args *args = arguments;
+    int status = check(args);
+    if (status)
+        return status;
+    cli_catch_signals();
+    cli_progress_start(args->render.common.quiet);
+    noc_log *log = cli_log_create(&args->render.common);
+    status = noc_render_check(&args->render.render, log) ? CLI_FAILURE : view(args, log);
+    noc_log_destroy(log);
+    return status;
+}

@@ -1,0 +1,231 @@
+/* Lamps by themselves, and all lights for the map. */
+#include "viewer/ask_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_LIGHTS = 100000, MOST_CARS = 20000, MOST_STOPS = 200000 };
+enum { SECTION_LIGHTS = 1, SECTION_CARS, SECTION_TRACKS };
+enum { LIGHT_BYTES = 24, CAR_BYTES = 16, STOP_BYTES = 12 };
+enum { KIND_OTHER, KIND_MAPPED, KIND_INFERRED, KIND_WINDOW, KIND_CAR };
+
+/* What the map calls a light. */
+static int kind_of(const noc_light_info *l) {
+    bool flat = l->light.kind == NOC_LIGHT_TRIANGLE || l->light.kind == NOC_LIGHT_PARALLELOGRAM;
+    if (l->light.moving)
+        return KIND_CAR;
+    if (l->lamp)
+        return l->light.inferred ? KIND_INFERRED : KIND_MAPPED;
+    return flat ? KIND_WINDOW : KIND_OTHER;
+}
+
+static unsigned char srgb8(double v) {
+    double s = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
+    return (unsigned char)lrint(255 * fmin(1, fmax(0, s)));
+}
+
+static void colour_of(const noc_light_info *l, unsigned char rgb[3]) {
+    const float *e = l->light.emission;
+    double most = fmax((double)e[0], fmax((double)e[1], (double)e[2]));
+    for (int k = 0; k < 3; k++)
+        rgb[k] = most > 0 ? srgb8((double)e[k] / most) : 0;
+}
+
+static void put_light(unsigned char *out, const noc_light_info *l, size_t index) {
+    for (int k = 0; k < 3; k++)
+        wire_put_f32(out + 4 * k, (float)l->centre[k]);
+    wire_put_f32(out + 12, (float)l->lumens);
+    colour_of(l, out + 16);
+    out[19] = (unsigned char)kind_of(l);
+    wire_put_u32(out + 20, (uint32_t)index);
+}
+
+/* The message as it grows. */
+typedef struct map {
+    unsigned char *data; /* NULL: memory was refused */
+    size_t size, room;
+} map;
+
+static unsigned char *more(map *m, size_t bytes) {
+    if (m->data && m->size + bytes > m->room) {
+        m->room = 2 * (m->size + bytes);
+        unsigned char *grown = realloc(m->data, m->room);
+        if (!grown)
+            free(m->data);
+        m->data = grown;
+    }
+    m->size += bytes;
+    return m->data ? m->data + m->size - bytes : NULL;
+}
+
+/* A section whose records are to follow: its count is written where it ends. */
+static size_t begin_section(map *m, uint32_t kind) {
+    unsigned char *at = more(m, 8);
+    if (at)
+        wire_put_u32(at, kind);
+    return m->size;
+}
+
+static void end_section(const map *m, size_t from, size_t record) {
+    if (m->data)
+        wire_put_u32(m->data + from - 4, (uint32_t)((m->size - from) / record));
+}
+
+/* Lamps first, then all others, as far as there is room: a map shows so many. */
+static void add_lights(const asker *a, map *m, size_t slots) {
+    size_t from = begin_section(m, SECTION_LIGHTS), count = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t i = 0; i < slots && count < MOST_LIGHTS && !ask_stopped(a); i++) {
+            noc_light_info l;
+            if (noc_scene_get_light(world_scene(a->world), i, &l) || l.removed || !(l.lumens > 0) || l.lamp == pass)
+                continue;
+            unsigned char *at = more(m, LIGHT_BYTES);
+            if (at)
+                put_light(at, &l, i);
+            count++;
+        }
+    end_section(m, from, LIGHT_BYTES);
+}
+
+static void add_cars(const asker *a, map *m, size_t cars) {
+    size_t from = begin_section(m, SECTION_CARS);
+    for (size_t i = 0; i < cars && i < MOST_CARS && !ask_stopped(a); i++) {
+        noc_car_info car;
+        unsigned char *at = noc_scene_get_car(world_scene(a->world), i, &car) ? NULL : more(m, CAR_BYTES);
+        for (int k = 0; at && k < 3; k++)
+            wire_put_f32(at + 4 * k, (float)car.place[k]);
+        if (at)
+            wire_put_f32(at + 12, (float)car.heading);
+    }
+    end_section(m, from, CAR_BYTES);
+}
+
+/* Each part of a track is a line. */
+static void add_tracks(const asker *a, map *m) {
+    static const size_t most = 2000; /* stops of one */
+    noc_track_stop *stops = malloc(most * sizeof(*stops));
+    size_t from = begin_section(m, SECTION_TRACKS), total = 0;
+    uint32_t line = 0;
+    for (size_t i = 0; stops && i < noc_scene_track_count(world_scene(a->world)) && total < MOST_STOPS; i++) {
+        size_t count = noc_scene_get_track(world_scene(a->world), i, stops, most);
+        line++;
+        for (size_t k = 0; k < count && k < most && !ask_stopped(a); k++, total++) {
+            unsigned char *at = more(m, STOP_BYTES);
+            line += stops[k].begins && k;
+            if (!at)
+                break;
+            wire_put_f32(at, (float)stops[k].place[0]);
+            wire_put_f32(at + 4, (float)stops[k].place[1]);
+            wire_put_u32(at + 8, line);
+        }
+    }
+    free(stops);
+    end_section(m, from, STOP_BYTES);
+}
+
+void ask_lights(asker *a, const question *q) {
+    noc_scene_info info;
+    noc_scene_get_info(world_scene(a->world), &info);
+    map m = { malloc(OUTBOX_ROOM + WIRE_HEAD), OUTBOX_ROOM + WIRE_HEAD, OUTBOX_ROOM + WIRE_HEAD };
+    if (!q->ask.moving) {
+        add_lights(a, &m, info.light_slots);
+        add_tracks(a, &m);
+    }
+    add_cars(a, &m, info.cars);
+    if (!m.data) {
+        ask_refuse(a, q, "there is no memory for it");
+        return;
+    }
+    wire_write_head(&(wire_head){ .kind = WIRE_IS_LIGHTS, .number = q->id }, m.data + OUTBOX_ROOM);
+    if (ask_stopped(a))
+        free(m.data);
+    else
+        outbox_binary(a->box, q->id, m.data, m.size - OUTBOX_ROOM);
+}
+
+/* What the file of a lamp says of it. */
+static json_t *tags_of(const char *tags) {
+    json_t *list = json_object();
+    while (*tags) {
+        size_t n = strcspn(tags, "\n"), key = strcspn(tags, "=");
+        char name[256], value[1024];
+        if (key < n) {
+            snprintf(name, sizeof(name), "%.*s", (int)key, tags);
+            snprintf(value, sizeof(value), "%.*s", (int)(n - key - 1), tags + key + 1);
+            json_t *known = json_string(name); /* a key must be UTF-8, too */
+            if (known)
+                json_object_set_new(list, name, wire_text(value));
+            json_decref(known);
+        }
+        tags += n + (tags[n] == '\n');
+    }
+    return list;
+}
+
+static void add_report(const asker *a, const question *q, json_t *m) {
+    const noc_report *report = world_report(a->world);
+    const noc_report_lamp *lamp;
+    for (size_t i = 0; report && (lamp = noc_report_get_lamp(report, i)); i++) {
+        if (lamp->light != q->ask.light)
+            continue;
+        json_object_set_new(m, "file", wire_text(lamp->file));
+        json_object_set_new(m, "street", wire_text(lamp->street));
+        json_object_set_new(m, "profile", wire_text(lamp->profile));
+        json_object_set_new(m, "watts", ask_number(lamp->watts));
+        json_object_set_new(m, "tags", tags_of(lamp->tags));
+        return;
+    }
+}
+
+void ask_align(asker *a, const question *q) {
+    enum { HEIGHT = 1000 };
+    noc_camera_point points[WIRE_PAIRS];
+    noc_camera camera = noc_camera_default();
+    double width = fmax(1, HEIGHT * q->ask.aspect), residual;
+    for (int i = 0; i < q->ask.pairs; i++) {
+        memcpy(points[i].xyz, q->ask.place[i], sizeof(points[i].xyz));
+        points[i].pixel[0] = q->ask.photo[i][0] * width;
+        points[i].pixel[1] = q->ask.photo[i][1] * HEIGHT;
+    }
+    noc_status status =
+        noc_camera_align(points, (size_t)q->ask.pairs, (int)lrint(width), HEIGHT, NULL, &camera, &residual, a->log);
+    if (status) {
+        ask_refuse(a, q, *a->wrong ? a->wrong : noc_status_text(status));
+        return;
+    }
+    json_t *m = ask_begin(q, 1), *to = json_object();
+    json_object_set_new(to, "eye", ask_place(camera.eye));
+    json_object_set_new(to, "target", ask_place(camera.target));
+    json_object_set_new(to, "fov", json_real(camera.fov_deg));
+    json_object_set_new(m, "camera", to);
+    json_object_set_new(m, "error", ask_number(residual / HEIGHT));
+    ask_send(a, q, m);
+    wire_message go = { .kind = WIRE_CAMERA };
+    memcpy(go.camera.to.eye, camera.eye, sizeof(camera.eye));
+    memcpy(go.camera.to.target, camera.target, sizeof(camera.target));
+    go.camera.to.fov = camera.fov_deg;
+    inbox_put(a->in, &go);
+}
+
+void ask_lamp(asker *a, const question *q) {
+    static const char *const kinds[] = { "other", "lamp", "inferred", "window", "car" };
+    noc_scene_info info;
+    noc_light_info l;
+    noc_scene_get_info(world_scene(a->world), &info);
+    if (q->ask.light >= info.light_slots || noc_scene_get_light(world_scene(a->world), q->ask.light, &l) || l.removed) {
+        ask_refuse(a, q, "there is no such light");
+        return;
+    }
+    json_t *m = ask_begin(q, 1), *crs = ask_crs(a, l.centre);
+    json_object_set_new(m, "light", json_integer((json_int_t)q->ask.light));
+    json_object_set_new(m, "name", wire_text(l.light.name ? l.light.name : ""));
+    json_object_set_new(m, "kind", json_string(kinds[kind_of(&l)]));
+    json_object_set_new(m, "place", ask_place(l.centre));
+    if (crs)
+        json_object_set_new(m, "crs", crs);
+    json_object_set_new(m, "lumens", ask_number(l.lumens));
+    add_report(a, q, m);
+    ask_send(a, q, m);
+}

@@ -1,0 +1,62 @@
+/* What the files of a client's questions share. */
+#ifndef NOC_VIEWER_ASK_PARTS_H
+#define NOC_VIEWER_ASK_PARTS_H
+
+#include "viewer/ask.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { ASK_WAITING = 8, ASK_KEPT = 8, ASK_ROWS = 40 };
+
+typedef struct question {
+    uint32_t id;
+    wire_ask ask;
+    char object[512]; /* what ask.object points at */
+    ask_view view;
+} question;
+
+struct asker {
+    viewer_world *world;
+    outbox *box;
+    inbox *in; /* of its session: where it is told to go */
+    pthread_t thread;
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    question *waiting[ASK_WAITING];
+    int count;
+    struct {
+        uint32_t id;
+        char *csv;    /* NULL: none */
+    } kept[ASK_KEPT]; /* answers, a ring */
+    int next;
+    bool ended;
+    atomic_bool stopped; /* the question that is being answered is not wanted any more */
+    bool busy;
+    uint32_t now; /* its id */
+    /* of its thread alone */
+    noc_log *log;
+    noc_view *ask_view; /* for rays and rankings */
+    char wrong[256];    /* what was reported last */
+};
+
+/* An answer {"t": "answer", "id", "done"} to be filled. */
+json_t *ask_begin(const question *q, double done);
+void ask_send(asker *a, const question *q, json_t *answer);
+void ask_refuse(asker *a, const question *q, const char *why);
+bool ask_stopped(const asker *a);
+void ask_keep(asker *a, uint32_t id, char *csv); /* takes it */
+json_t *ask_place(const double place[3]);
+/* {"name", "place"} in the CRS that the user speaks; NULL where the scene has none. */
+json_t *ask_crs(const asker *a, const double place[3]);
+json_t *ask_number(double value); /* null where it is not finite */
+
+/* ask_rank.c: pixel and region */
+void ask_pixel(asker *a, const question *q);
+void ask_region(asker *a, const question *q);
+/* ask_map.c: lamp, lights and a photograph */
+void ask_align(asker *a, const question *q);
+void ask_lamp(asker *a, const question *q);
+void ask_lights(asker *a, const question *q);
+
+#endif

@@ -1,0 +1,266 @@
+/* Who lights this: a place of the picture, or a region. */
+#include "viewer/ask_parts.h"
+
+#include <nocturne/influence.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FIRST_SECONDS 0.15 /* until the first answer */
+#define MOST_SECONDS 6.0   /* until the last one, where light is hard to find */
+#define MOST_PIXELS 160000 /* of a picture that a rectangle is asked of */
+#define GOOD 0.01          /* relative standard error of the greatest share, that is enough */
+
+/* ---- rows ---- */
+
+static const char *kind_of(const noc_emitter *e) {
+    static const char *const names[] = { [NOC_EMITTER_LAMP] = "lamp",
+                                         [NOC_EMITTER_WINDOW] = "window",
+                                         [NOC_EMITTER_VEHICLE] = "car",
+                                         [NOC_EMITTER_SURFACE] = "other",
+                                         [NOC_EMITTER_OTHER] = "other" };
+    return e->kind == NOC_EMITTER_LAMP && e->inferred ? "inferred" : names[e->kind];
+}
+
+static json_t *row_of(const char *kind, const char *name, long light, const noc_estimate *share,
+                      const noc_estimate *lux) {
+    json_t *row = json_object();
+    json_object_set_new(row, "light", json_integer(light));
+    json_object_set_new(row, "kind", json_string(kind));
+    json_object_set_new(row, "name", wire_text(name));
+    json_object_set_new(row, "share", ask_number(share->value));
+    json_object_set_new(row, "error", ask_number(share->error));
+    json_object_set_new(row, "lux", ask_number(lux->value));
+    return row;
+}
+
+static json_t *rows_of(const noc_influence_row *rows, size_t count, const noc_influence_sum *sum) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++) {
+        const noc_emitter *e = &rows[i].emitter;
+        json_t *row = row_of(kind_of(e), *e->name ? e->name : e->of, (long)e->light, &rows[i].share, &rows[i].lux);
+        json_object_set_new(row, "place", ask_place(e->centre));
+        json_array_append_new(list, row);
+    }
+    if (sum->sky.value > 0)
+        json_array_append_new(list, row_of("sky", "sky", -1, &sum->sky_share, &sum->sky));
+    if (sum->rest.value > 0)
+        json_array_append_new(list, row_of("other", "all others", -1, &sum->rest_share, &sum->rest));
+    return list;
+}
+
+/* As noc_influence tells it: ids are strangers' words, so quotes are doubled, and a sign that begins a formula in
+ * programs that show tables is put behind an apostrophe. */
+static void write_text(FILE *out, const char *text) {
+    fputc('"', out);
+    if (*text == '=' || *text == '+' || *text == '-' || *text == '@')
+        fputc('\'', out);
+    for (; *text; text++) {
+        if (*text == '"')
+            fputc('"', out);
+        fputc((unsigned char)*text < ' ' ? ' ' : *text, out);
+    }
+    fputc('"', out);
+}
+
+static void write_row(FILE *out, size_t rank, const char *kind, const char *name, long light, const double *place,
+                      const noc_estimate *share, const noc_estimate *lux) {
+    fprintf(out, "%zu,%s,", rank, kind);
+    write_text(out, name);
+    fprintf(out, ",%ld,", light);
+    if (place)
+        fprintf(out, "%.3f,%.3f,%.3f", place[0], place[1], place[2]);
+    else
+        fputs(",,", out);
+    fprintf(out, ",%.6g,%.3g,%.6g,%.3g\n", share->value, share->error, lux->value, lux->error);
+}
+
+static char *csv_of(const noc_influence_row *rows, size_t count, const noc_influence_sum *sum) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fputs("rank,kind,name,light,x,y,z,share,share_error,lux,lux_error\n", out);
+    for (size_t i = 0; i < count; i++) {
+        const noc_emitter *e = &rows[i].emitter;
+        write_row(out, i + 1, kind_of(e), *e->name ? e->name : e->of, (long)e->light, e->centre, &rows[i].share,
+                  &rows[i].lux);
+    }
+    if (sum->sky.value > 0)
+        write_row(out, count + 1, "sky", "sky", -1, NULL, &sum->sky_share, &sum->sky);
+    if (sum->rest.value > 0)
+        write_row(out, count + 2, "other", "all others", -1, NULL, &sum->rest_share, &sum->rest);
+    return fclose(out) ? (free(text), NULL) : text;
+}
+
+/* ---- refining ---- */
+
+static bool goes_on(void *user, const char *what, double done) {
+    (void)what, (void)done;
+    return !ask_stopped(user);
+}
+
+/* One answer of what is known by now. about: what is said of the place beside it; is not taken. */
+static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *about, double done) {
+    noc_influence_row rows[ASK_ROWS];
+    noc_influence_sum sum;
+    size_t found;
+    if (noc_ranking_get(ranking, rows, ASK_ROWS, &found, &sum))
+        return;
+    json_t *m = ask_begin(q, done);
+    json_object_update(m, about);
+    json_object_set_new(m, "lux", ask_number(sum.lux.value));
+    json_object_set_new(m, "lux_error", ask_number(sum.lux.error));
+    json_object_set_new(m, "luminance", ask_number(sum.luminance.value));
+    json_object_set_new(m, "luminance_error", ask_number(sum.luminance.error));
+    json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
+    json_object_set_new(m, "rows", rows_of(rows, found, &sum));
+    ask_send(a, q, m);
+    if (done >= 1)
+        ask_keep(a, q->id, csv_of(rows, found, &sum));
+}
+
+/* Is the greatest share known well enough? */
+static bool is_good(noc_ranking *ranking) {
+    noc_influence_row first;
+    size_t found;
+    return !noc_ranking_get(ranking, &first, 1, &found, NULL) && found && first.share.error < GOOD * first.share.value;
+}
+
+static void rank(asker *a, const question *q, const noc_region *region, json_t *about) {
+    noc_ranking_params params = { .render = &q->view.render, .eye = q->view.camera.eye };
+    noc_ranking *ranking = noc_ranking_create(a->ask_view, region, &params);
+    noc_status status = ranking ? NOC_OK : NOC_ERR_MEMORY;
+    double spent = 0, next = FIRST_SECONDS;
+    while (!status && spent < MOST_SECONDS) {
+        status = noc_ranking_refine(ranking, &(noc_ranking_target){ .seconds = next, .error = GOOD },
+                                    &(noc_progress){ goes_on, a });
+        spent += next;
+        next = fmin(2 * next, 1.5);
+        if (status)
+            break;
+        bool last = spent >= MOST_SECONDS || is_good(ranking);
+        tell(a, q, ranking, about, last ? 1 : spent / MOST_SECONDS);
+        if (last)
+            break;
+    }
+    if (status && status != NOC_ERR_CANCELLED)
+        ask_refuse(a, q, *a->wrong ? a->wrong : noc_status_text(status));
+    noc_ranking_destroy(ranking);
+}
+
+/* ---- places ---- */
+
+static json_t *about_hit(const asker *a, const noc_hit *hit) {
+    const char *object = hit->object < 0 ? NULL : noc_scene_object_name(world_scene(a->world), (size_t)hit->object);
+    json_t *about = json_object();
+    json_object_set_new(about, "place", ask_place(hit->place));
+    json_t *crs = ask_crs(a, hit->place);
+    if (crs)
+        json_object_set_new(about, "crs", crs);
+    json_object_set_new(about, "class", json_string(noc_class_name(hit->cls)));
+    if (object)
+        json_object_set_new(about, "object", wire_text(object));
+    if (hit->light >= 0)
+        json_object_set_new(about, "light", json_integer(hit->light));
+    return about;
+}
+
+static noc_status cast(asker *a, const question *q, noc_hit *hit) {
+    const ask_view *v = &q->view;
+    noc_ray ray;
+    noc_status status =
+        noc_camera_ray(&v->camera, v->width, v->height, (double[2]){ q->ask.x * v->width, q->ask.y * v->height }, &ray);
+    return status ? status : noc_view_cast(a->ask_view, &ray, 1, hit);
+}
+
+void ask_pixel(asker *a, const question *q) {
+    noc_hit hit;
+    noc_status status = cast(a, q, &hit);
+    if (status || !hit.hit) { /* the sky has no place */
+        if (status)
+            ask_refuse(a, q, noc_status_text(status));
+        else
+            ask_send(a, q, ask_begin(q, 1));
+        return;
+    }
+    noc_patch patch = { .weight = 1, .material = hit.material < 0 ? NOC_NO_MATERIAL : (uint32_t)hit.material };
+    for (int k = 0; k < 3; k++) {
+        patch.p[k] = (float)hit.place[k];
+        patch.n[k] = (float)hit.normal[k];
+    }
+    noc_region *region = noc_region_create(a->log);
+    json_t *about = about_hit(a, &hit);
+    if (region && !noc_region_add(region, &patch, 1))
+        rank(a, q, region, about);
+    else
+        ask_refuse(a, q, *a->wrong ? a->wrong : "there is no memory for it");
+    json_decref(about);
+    noc_region_destroy(region);
+}
+
+/* A polygon of the map as WKT, in the CRS that the scene's coordinates are asked in. */
+static void write_polygon(FILE *out, const asker *a, const wire_ask *ask) {
+    fputs("polygon:POLYGON((", out);
+    for (int i = 0; i <= ask->points; i++) {
+        const double *p = ask->point[i % ask->points];
+        double there[3] = { p[0], p[1], 0 };
+        noc_scene_info info;
+        noc_scene_get_info(world_scene(a->world), &info);
+        if (*info.given_crs)
+            noc_scene_from_local(world_scene(a->world), NULL, there);
+        fprintf(out, "%s%.12g %.12g", i ? ", " : "", there[0], there[1]);
+    }
+    fputs("))", out);
+}
+
+/* The region as nocturne influence --region says it. */
+static char *words_of(const asker *a, const wire_ask *ask, int w, int h) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    if (ask->has_rect) {
+        const double *r = ask->rect;
+        int x0 = (int)fmax(0, floor(fmin(r[0], r[2]) * w)), x1 = (int)fmin(w - 1, ceil(fmax(r[0], r[2]) * w) - 1);
+        int y0 = (int)fmax(0, floor(fmin(r[1], r[3]) * h)), y1 = (int)fmin(h - 1, ceil(fmax(r[1], r[3]) * h) - 1);
+        fprintf(out, "rect:%d,%d,%d,%d", x0, y0, x1 < x0 ? x0 : x1, y1 < y0 ? y0 : y1);
+    } else if (ask->points) {
+        write_polygon(out, a, ask);
+    } else {
+        fprintf(out, "object:%s", ask->object);
+    }
+    return fclose(out) ? (free(text), NULL) : text;
+}
+
+/* Of a picture with so few pixels that a rectangle of it asks for few rays. */
+static noc_region *find(asker *a, const question *q) {
+    double w = q->view.width, h = q->view.height, scale = fmin(1, sqrt(MOST_PIXELS / (w * h)));
+    noc_region_params params = { .camera = &q->view.camera,
+                                 .width = (int)fmax(1, w * scale),
+                                 .height = (int)fmax(1, h * scale) };
+    char *words = words_of(a, &q->ask, params.width, params.height);
+    noc_region *region = words ? noc_region_find(a->ask_view, world_scene(a->world), words, &params, a->log) : NULL;
+    free(words);
+    return region;
+}
+
+void ask_region(asker *a, const question *q) {
+    noc_region *region = find(a, q);
+    if (!region) {
+        ask_refuse(a, q, *a->wrong ? a->wrong : "there is no memory for it");
+        return;
+    }
+    noc_region_info info;
+    noc_region_get_info(region, &info);
+    json_t *about = json_object();
+    json_object_set_new(about, "place", ask_place(info.centre));
+    if (!q->ask.has_rect)
+        json_object_set_new(about, "area", ask_number(info.weight));
+    rank(a, q, region, about);
+    json_decref(about);
+    noc_region_destroy(region);
+}

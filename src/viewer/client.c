@@ -1,0 +1,97 @@
+#include "viewer/client.h"
+#include "viewer/wire.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Codes of RFC 6455, 7.4.1 */
+enum { NO_TEXT = 1003, POLICY = 1008, TOO_BIG = 1009, NO_MEMORY = 1011 };
+
+struct client {
+    struct lws *socket;
+    outbox *box;
+    session *session;
+    double messages, bytes; /* that it may send now */
+    double counted;         /* when those were counted */
+    bool begun;
+    double asked; /* since when something waits for it to read; 0: nothing does */
+    char why[128];
+    size_t size; /* of the message so far */
+    char text[WIRE_TEXT];
+};
+
+client *client_create(struct lws *socket, const session_setup *setup, void (*wake)(void *user), void *user) {
+    client *c = calloc(1, sizeof(*c));
+    if (!c)
+        return NULL;
+    c->socket = socket;
+    c->box = outbox_create(wake, user);
+    c->session = c->box ? session_create(setup, c->box) : NULL;
+    if (c->session)
+        return c;
+    outbox_destroy(c->box);
+    free(c);
+    return NULL;
+}
+
+void client_destroy(client *c) {
+    session_destroy(c->session);
+    outbox_destroy(c->box);
+    free(c);
+}
+
+void client_leave(client *c) {
+    c->socket = NULL;
+    session_end(c->session);
+}
+
+struct lws *client_socket(const client *c) {
+    return c->socket;
+}
+session *client_session(const client *c) { return c->session; }
+outbox *client_outbox(const client *c) { return c->box; }
+
+/* false: it has sent more than it may. */
+static bool within_rates(client *c, size_t size, double now) {
+    double spent = c->begun ? now - c->counted : CLIENT_AT_ONCE;
+    c->begun = true;
+    c->counted = now;
+    c->messages += spent * CLIENT_MESSAGES;
+    c->bytes += spent * CLIENT_BYTES;
+    c->messages = c->messages < CLIENT_AT_ONCE * CLIENT_MESSAGES ? c->messages : CLIENT_AT_ONCE * CLIENT_MESSAGES;
+    c->bytes = c->bytes < CLIENT_AT_ONCE * CLIENT_BYTES ? c->bytes : CLIENT_AT_ONCE * CLIENT_BYTES;
+    c->messages -= 1;
+    c->bytes -= (double)size;
+    return c->messages >= 0 && c->bytes >= 0;
+}
+
+static int take(client *c, const char **why) {
+    wire_message message;
+    bool read = wire_read(c->text, c->size, &message, c->why, sizeof(c->why));
+    c->size = 0;
+    if (!read) {
+        *why = c->why;
+        return POLICY;
+    }
+    *why = "more messages wait than may";
+    return session_take(c->session, &message) ? 0 : POLICY;
+}
+
+int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why) {
+    *why = "too many messages, or bytes, in a second";
+    if (!within_rates(c, size, now)) /* pieces count, so that empty ones are no way around it */
+        return POLICY;
+    *why = "a binary message";
+    if (binary)
+        return NO_TEXT;
+    *why = "the message is too long";
+    if (size > sizeof(c->text) - c->size)
+        return TOO_BIG;
+    memcpy(c->text + c->size, data, size);
+    c->size += size;
+    return last ? take(c, why) : 0;
+}
+
+void client_asked(client *c, double now) { c->asked = c->asked > 0 ? c->asked : now; }
+void client_written(client *c, double now) { c->asked = outbox_pending(c->box) ? now : 0; }
+bool client_stuck(const client *c, double now) { return c->asked > 0 && now - c->asked > CLIENT_SILENCE; }

@@ -1,0 +1,40 @@
+/* client: one connection: what it may send, and what waits to be sent to it. Used by the service thread alone, but for
+ * its outbox. */
+#ifndef NOC_VIEWER_CLIENT_H
+#define NOC_VIEWER_CLIENT_H
+
+#include "viewer/outbox.h"
+#include "viewer/session.h"
+
+/* What a client may send, from second to second and at once. A page sends some 60 inputs and 60 acknowledgements a
+ * second. */
+#define CLIENT_MESSAGES 400 /* a second */
+#define CLIENT_BYTES 200000 /* a second */
+#define CLIENT_AT_ONCE 3    /* seconds' worth of them */
+#define CLIENT_SILENCE 20   /* s that it may not read */
+
+typedef struct client client;
+struct lws;
+
+/* The client of that connection, with a session of its own. wake: something is to be sent, from any thread. NULL: no
+ * memory. */
+client *client_create(struct lws *socket, const session_setup *setup, void (*wake)(void *user), void *user);
+/* After its session has ended, which this waits for. */
+void client_destroy(client *c);
+/* The connection is gone: asks the session to end, and does not wait. */
+void client_leave(client *c);
+
+struct lws *client_socket(const client *c); /* NULL once it has left */
+session *client_session(const client *c);
+outbox *client_outbox(const client *c);
+
+/* A piece of a message; last: it is its end. 0, or the code of RFC 6455 with which the connection is to be closed, and
+ * why. */
+int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why);
+
+/* Called before and after each message to the client; and now and then: has it not read for too long? */
+void client_asked(client *c, double now);
+void client_written(client *c, double now);
+bool client_stuck(const client *c, double now);
+
+#endif

@@ -1,0 +1,360 @@
+// ask.js: who lights this? A click in the picture asks about a place; a rectangle, a polygon of the map or a building
+// asks about a region. The answer is a ranked table, and each of its rows shows its light.
+import { el, button, number, places } from './dom.js';
+
+export class Ask {
+    #asked = 0; // the question that is shown
+    #running = false;
+    #answer = null;
+    #what = '';
+    #lit = new Set(); // lights whose rows are held
+    #tool = null; // corners of the rectangle that is drawn in the picture
+
+    constructor(app, drawers, map, panes, input) {
+        this.app = app;
+        this.drawers = drawers;
+        this.map = map;
+        this.panes = panes;
+        this.input = input;
+        this.building = button(
+            'Whole object',
+            () => this.#region({ object: this.#answer?.object }, `${this.#kind(this.#answer)} ${this.#answer?.object}`),
+            { title: 'the building or street of the place that was asked about', disabled: true },
+        );
+        const tools = el(
+            'div',
+            { class: 'tools', role: 'group', 'aria-label': 'What is asked about' },
+            button('Middle', () => this.pick({ pane: Math.max(app.editing, 0), x: 0.5, y: 0.5 }), {
+                title: 'the middle of the picture',
+            }),
+            (this.rect = button('Rectangle', () => this.rectangle(), {
+                title: 'drag it in the picture',
+                'aria-pressed': 'false',
+            })),
+            button('Rectangle on map', () => this.#onMap('rect')),
+            button('Polygon on map', () => this.#onMap('polygon')),
+            this.building,
+        );
+        this.out = el(
+            'div',
+            { class: 'answer' },
+            el('p', { class: 'quiet', text: 'Click a place in the picture, or choose a region.' }),
+        );
+        drawers.add('Lights', 'right', el('div', { class: 'body' }, tools, this.out), 'T');
+        panes.marks.push((context, pane) => this.#mark(context, pane));
+        app.on('welcome', () => this.#forget());
+    }
+
+    pick(hit) {
+        this.map.region = null;
+        this.#ask('pixel', hit, 'place');
+    }
+
+    lamp(light) {
+        this.#ask('lamp', { light: light.light }, 'lamp');
+        this.app.highlight([light]);
+    }
+
+    // The next drag in the picture is a rectangle.
+    rectangle() {
+        if (this.input.tool) return this.#untool();
+        const start = {};
+        this.rect.setAttribute('aria-pressed', 'true');
+        this.panes.root.classList.add('selecting');
+        this.input.tool = {
+            start: (hit) => Object.assign(start, hit),
+            drag: (hit) => {
+                if (hit.pane !== start.pane) return;
+                this.#tool = {
+                    pane: hit.pane,
+                    rect: [
+                        Math.min(start.x, hit.x),
+                        Math.min(start.y, hit.y),
+                        Math.max(start.x, hit.x),
+                        Math.max(start.y, hit.y),
+                    ],
+                };
+                this.panes.draw();
+            },
+            end: () => {
+                const drawn = this.#tool;
+                this.#untool();
+                if (drawn && drawn.rect[2] - drawn.rect[0] > 0.002 && drawn.rect[3] - drawn.rect[1] > 0.002)
+                    this.#region({ ...drawn, pane: drawn.pane }, 'rectangle of the picture');
+            },
+        };
+    }
+
+    cancelTool() {
+        if (!this.input.tool) return false;
+        this.#untool();
+        return true;
+    }
+
+    #untool() {
+        this.input.tool = null;
+        this.#tool = null;
+        this.rect.setAttribute('aria-pressed', 'false');
+        this.panes.root.classList.remove('selecting');
+        this.panes.draw();
+    }
+
+    #onMap(kind) {
+        this.drawers.show('Map');
+        this.map.draw(kind, (polygon) =>
+            this.#region({ polygon }, kind === 'rect' ? 'rectangle of the map' : 'polygon of the map'),
+        );
+    }
+
+    #region(values, what) {
+        this.#ask('region', values, what);
+    }
+
+    #forget() {
+        this.#answer = null;
+        this.map.place = null;
+        this.building.disabled = true;
+        this.app.highlight([]);
+    }
+
+    #ask(what, values, words) {
+        if (this.#running) this.app.cancel(this.#asked);
+        this.#what = words;
+        this.#lit.clear();
+        this.app.highlight([]);
+        this.drawers.show('Lights', false);
+        this.out.replaceChildren(el('p', { class: 'quiet', role: 'status', text: 'Asking …' }));
+        this.#running = true;
+        this.#asked = this.app.ask(what, values, (answer) => this.#take(what, answer));
+    }
+
+    #take(what, answer) {
+        this.#running = answer.done < 1;
+        if (answer.refused) {
+            this.out.replaceChildren(el('p', { class: 'warn', text: answer.refused }));
+            return;
+        }
+        this.#answer = answer;
+        if (what === 'pixel') {
+            this.building.disabled = !answer.object;
+            this.building.textContent = answer.object ? `Whole ${this.#kind(answer)}` : 'Whole object';
+        }
+        if (answer.place) this.map.place = answer.place;
+        if (what === 'lamp' && answer.place) this.app.highlight([{ light: answer.light, place: answer.place }]);
+        this.map.redraw();
+        const held = document.activeElement?.closest?.('tr')?.dataset.light;
+        this.out.replaceChildren(
+            ...(what === 'lamp' ? this.#lamp(answer) : this.#place(answer)),
+            ...this.#table(answer),
+        );
+        if (held) this.out.querySelector(`tr[data-light="${held}"]`)?.focus();
+        this.panes.draw();
+    }
+
+    #facts(pairs) {
+        const list = el('dl', { class: 'facts' });
+        for (const [name, value] of pairs)
+            if (value !== undefined && value !== null && value !== '')
+                list.append(el('dt', { text: name }), el('dd', { text: value }));
+        return list;
+    }
+
+    #kind(answer) {
+        if (['wall', 'roof', 'window', 'door', 'installation'].includes(answer.class)) return 'building';
+        return { road: 'street', sidewalk: 'street' }[answer.class] ?? 'object';
+    }
+
+    #where(answer) {
+        return [
+            [answer.crs?.name ?? 'CRS', answer.crs?.place && places(answer.crs.place)],
+            ['scene', answer.place && `${places(answer.place)} m`],
+        ];
+    }
+
+    #place(answer) {
+        if (this.#what === 'place' && !answer.place) return [el('p', { text: 'Nothing is there: the sky.' })];
+        const lamp =
+            answer.light !== undefined && answer.light !== null && answer.light >= 0
+                ? button('This is a lamp: its card', () => this.lamp({ light: answer.light, place: answer.place }))
+                : null;
+        return [
+            el('h3', { text: `Who lights this ${this.#what}?` }),
+            this.#facts([
+                ...this.#where(answer),
+                ['class', answer.class],
+                ['object', answer.object],
+                ['area', answer.area && `${number(answer.area)} m²`],
+                ['illuminance', this.#estimate(answer.lux, answer.lux_error, 'lx')],
+                ['luminance', this.#estimate(answer.luminance, answer.luminance_error, 'cd/m²')],
+            ]),
+            lamp,
+        ].filter((one) => one);
+    }
+
+    #estimate(value, error, unit) {
+        if (value === undefined || value === null) return null;
+        return `${number(value)}${error ? ` ± ${number(error, 2)}` : ''} ${unit}`;
+    }
+
+    #lamp(answer) {
+        const kelvin = answer.kelvin ? `${number(answer.kelvin, 4)} K` : null;
+        const go = answer.place ? button('Go there', () => this.map.goTo(answer.place)) : null;
+        return [
+            el('h3', { text: answer.name || `light ${answer.light ?? ''}` }),
+            this.#facts([
+                ['kind', answer.kind],
+                ...this.#where(answer),
+                ['flux', answer.lumens !== undefined && `${number(answer.lumens)} lm`],
+                ['colour', kelvin],
+                ['group', answer.group],
+                ['file', answer.file],
+                ...Object.entries(answer.tags ?? {}),
+            ]),
+            go,
+        ].filter((one) => one);
+    }
+
+    #table(answer) {
+        const rows = answer.rows ?? [];
+        const progress =
+            answer.done < 1
+                ? el(
+                      'div',
+                      { class: 'tools' },
+                      el('progress', { value: answer.done, max: 1, 'aria-label': 'Samples' }),
+                      button('Enough', () => this.#enough()),
+                  )
+                : null;
+        if (!rows.length)
+            return [progress ?? (answer.rows ? el('p', { class: 'quiet', text: 'No light reaches it.' }) : '')];
+        const most = Math.max(...rows.map((row) => row.share), 1e-9);
+        const body = el('tbody', {}, ...rows.map((row, i) => this.#row(row, i, most)));
+        const table = el(
+            'table',
+            { class: 'rows' },
+            el('caption', { class: 'hidden', text: 'Lights by what they bring' }),
+            el(
+                'thead',
+                {},
+                el('tr', {}, ...['', 'light', 'share', '±', 'lx'].map((text) => el('th', { scope: 'col', text }))),
+            ),
+            body,
+        );
+        const csv = answer.done >= 1 ? button('Save as CSV', () => this.app.save('csv', { of: this.#asked })) : null;
+        return [progress, table, csv].filter((one) => one);
+    }
+
+    #row(row, i, most) {
+        const one = row.light >= 0;
+        const named = row.name && row.name !== row.kind;
+        const bar = el('span', { class: 'bar' });
+        bar.style.width = `${(100 * row.share) / most}%`;
+        const line = el(
+            'tr',
+            {
+                data: { light: row.light },
+                tabindex: one ? 0 : null,
+                'aria-selected': one ? String(this.#lit.has(row.light)) : null,
+            },
+            el('td', { text: one ? i + 1 : '' }),
+            el(
+                'td',
+                {},
+                el('span', { text: named ? row.name : `${row.kind} ${one ? row.light : ''}` }),
+                ' ',
+                el('span', { class: 'quiet', text: named && one ? row.kind : '' }),
+                bar,
+            ),
+            el('td', { class: 'figure', text: `${number(100 * row.share)} %` }),
+            el('td', { class: 'figure quiet', text: row.error > 0 ? number(100 * row.error, 2) : '' }),
+            el('td', { class: 'figure', text: number(row.lux) }),
+        );
+        if (!one) return line;
+        const hold = () => {
+            if (!this.#lit.delete(row.light)) this.#lit.add(row.light);
+            line.setAttribute('aria-selected', this.#lit.has(row.light));
+            this.#show(null);
+        };
+        const events = {
+            click: hold,
+            mouseenter: () => this.#show(row),
+            mouseleave: () => this.#show(null),
+            focus: () => this.#show(row),
+            blur: () => this.#show(null),
+            dblclick: () => this.lamp(row),
+            keydown: (event) => {
+                if (event.key === ' ') hold();
+                else if (event.key === 'Enter') this.lamp(row);
+                else if (event.key === 'ArrowDown' || event.key === 'ArrowUp')
+                    (event.key === 'ArrowDown' ? line.nextSibling : line.previousSibling)?.focus?.();
+                else return;
+                event.preventDefault();
+                event.stopPropagation();
+            },
+        };
+        for (const [kind, act] of Object.entries(events)) line.addEventListener(kind, act);
+        return line;
+    }
+
+    #show(row) {
+        const held = (this.#answer?.rows ?? []).filter((one) => this.#lit.has(one.light));
+        this.app.highlight(row ? [row, ...held] : held);
+    }
+
+    #enough() {
+        this.app.cancel(this.#asked);
+        this.#running = false;
+        if (this.#answer) this.#take('region', { ...this.#answer, done: 1 });
+    }
+
+    // The place, the lights of chosen rows, the rectangle: over the picture.
+    #mark(context, pane) {
+        if (this.#tool?.pane === pane) {
+            const rect = this.panes.rect(pane);
+            const [x0, y0, x1, y1] = this.#tool.rect;
+            context.strokeStyle = '#7db4ff';
+            context.lineWidth = 1.5;
+            context.strokeRect(
+                rect.x + x0 * rect.width,
+                rect.y + y0 * rect.height,
+                (x1 - x0) * rect.width,
+                (y1 - y0) * rect.height,
+            );
+        }
+        const place =
+            this.drawers.isOpen('Lights') && this.#what === 'place'
+                ? this.panes.where(pane, this.#answer?.place)
+                : null;
+        context.lineWidth = 2;
+        for (const row of this.app.highlighted) {
+            const at = this.panes.where(pane, row.place);
+            if (!at) continue;
+            context.strokeStyle = '#7dffb0';
+            context.beginPath();
+            context.arc(at[0], at[1], 10, 0, 7);
+            context.stroke();
+            if (!place) continue;
+            context.globalAlpha = 0.6;
+            context.setLineDash([4, 4]);
+            context.beginPath();
+            context.moveTo(...place);
+            context.lineTo(...at);
+            context.stroke();
+            context.setLineDash([]);
+            context.globalAlpha = 1;
+        }
+        if (!place) return;
+        context.strokeStyle = '#ffd84d';
+        context.beginPath();
+        for (const [x, y] of [
+            [1, 0],
+            [-1, 0],
+            [0, 1],
+            [0, -1],
+        ]) {
+            context.moveTo(place[0] + 3 * x, place[1] + 3 * y);
+            context.lineTo(place[0] + 10 * x, place[1] + 10 * y);
+        }
+        context.stroke();
+    }
+}

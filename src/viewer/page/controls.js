@@ -1,0 +1,233 @@
+// controls.js: the control of one option, made from its row in the schema. Values are text, as on the command line.
+import { el, button, clamp } from './dom.js';
+
+const STEPS = 1000;
+const HOLD = 600; // ms after a change in which what the program says does not move the control
+
+// Where a slider stands for a number, 0 to 1, and back: where a range is long, small numbers have more room.
+function scale(option) {
+    const value = Number(option.value) || 0;
+    const wide = Math.max(100, 10 * Math.abs(value)); // where there is no end to speak of
+    const low = option.min > -1e5 ? option.min : -wide;
+    let high = option.max < 1e5 ? option.max : low < 0 ? wide : Math.max(value * 10, low + 10);
+    if (value && high / Math.abs(value) > 1000) high = value * 100;
+    const cubic = low >= 0 && (high - low) / Math.max(Math.abs(value), (high - low) / 1e4) > 12;
+    const bend = cubic ? 3 : 1;
+    return {
+        to: (number) => clamp((number - low) / (high - low), 0, 1) ** (1 / bend),
+        from: (part) => low + (high - low) * part ** bend,
+    };
+}
+
+// A number as text: as many figures as the slider has steps.
+function say(option, number) {
+    if (option.kind === 'int') return String(Math.round(number));
+    return String(Number(number.toPrecision(3)));
+}
+
+function numeric(option, change, labels) {
+    const map = scale(option);
+    const box = el('input', {
+        type: 'number',
+        min: option.min,
+        max: option.max,
+        step: option.kind === 'int' ? 1 : 'any',
+        ...labels,
+    });
+    const slider = el('input', {
+        type: 'range',
+        min: 0,
+        max: STEPS,
+        step: 1,
+        ...labels,
+        'aria-label': `${option.name}, slider`,
+    });
+    box.addEventListener('change', () => {
+        if (box.value === '' || !Number.isFinite(box.valueAsNumber)) return;
+        const number = clamp(box.valueAsNumber, option.min ?? -Infinity, option.max ?? Infinity);
+        box.value = option.kind === 'int' ? Math.round(number) : number;
+        change(box.value);
+    });
+    slider.addEventListener('input', () => {
+        box.value = say(option, clamp(map.from(slider.value / STEPS), option.min ?? -Infinity, option.max ?? Infinity));
+        slider.setAttribute('aria-valuetext', `${box.value} ${option.unit ?? ''}`);
+        change(box.value);
+    });
+    const show = (text) => {
+        box.value = Number.isFinite(Number(text)) ? Number(Number(text).toPrecision(6)) : '';
+        slider.value = map.to(Number(text)) * STEPS;
+        slider.setAttribute('aria-valuetext', `${box.value} ${option.unit ?? ''}`);
+    };
+    const unit = option.unit ? el('span', { class: 'unit', text: option.unit }) : null;
+    return { parts: [slider, el('span', { class: 'number' }, box, unit)], show, wide: true };
+}
+
+function bool(option, change, labels) {
+    const box = el('input', {
+        type: 'checkbox',
+        role: 'switch',
+        ...labels,
+        on: { change: () => change(box.checked ? 'on' : 'off') },
+    });
+    return { parts: [box], show: (text) => (box.checked = text === 'on' || text === 'true') };
+}
+
+function choice(option, change, labels) {
+    const names = option.kind === 'switch' ? ['auto', 'on', 'off'] : (option.choices ?? []);
+    const box = el('select', { ...labels, on: { change: () => change(box.value) } });
+    for (const name of names) box.append(el('option', { value: name, text: name }));
+    return { parts: [box], show: (text) => (box.value = text === 'true' ? 'on' : text === 'false' ? 'off' : text) };
+}
+
+function text(option, change, labels) {
+    const box = el('input', { type: 'text', ...labels, on: { change: () => change(box.value) } });
+    return { parts: [box], show: (value) => (box.value = value) };
+}
+
+function colour(option, change, labels) {
+    const box = el('input', { type: 'color', ...labels, on: { input: () => change(box.value) } });
+    return { parts: [box], show: (value) => (box.value = value || '#808080') };
+}
+
+// A number, or auto, which the program finds: exposure.
+function automatic(option, change, labels) {
+    const row = { ...option, kind: 'real', min: -10, max: 20, value: '3' };
+    const numbers = numeric(row, (value) => change(value), { 'aria-label': `${option.name}, by hand` });
+    const told = () => change(box.checked ? 'auto' : '3');
+    const box = el('input', { type: 'checkbox', role: 'switch', ...labels, on: { change: told } });
+    const show = (value) => {
+        box.checked = value === 'auto';
+        numbers.parts.forEach((part) => (part.hidden = box.checked));
+        if (!box.checked) numbers.show(value);
+    };
+    return { parts: [el('span', { class: 'quiet', text: 'auto' }), box], below: numbers.parts, show };
+}
+
+// A group of lights, in the words of --group: on or off, how bright, and in which colour.
+const LAMPS = [
+    ['own', 'own', 'each light in its own colour'],
+    ['2000K', 'sodium', 'as high-pressure sodium lamps, 2000 K'],
+    ['3000K', 'warm LED', '3000 K'],
+    ['4000K', 'LED', '4000 K'],
+];
+
+export function groupWords(value) {
+    const words = { on: true, scale: 1, colour: 'own' };
+    for (const word of String(value)
+        .split(',')
+        .map((one) => one.trim())) {
+        if (word === 'off') words.on = false;
+        else if (word === 'on') words.on = true;
+        else if (/^(own|#|[\d.]+k$)/i.test(word)) words.colour = word;
+        else if (word !== '' && Number.isFinite(Number(word))) words.scale = Number(word);
+    }
+    if (words.scale === 0) words.on = false;
+    return words;
+}
+
+function group(option, change, labels) {
+    let words = groupWords(option.value);
+    const told = () => change(words.on ? `${words.scale || 1},${words.colour}` : `off,${words.colour}`);
+    const name = option.name.replace(/^group\./, '');
+    const on = bool(option, (value) => ((words.on = value === 'on'), told()), labels);
+    const brightness = { name: `${name}, brightness`, kind: 'real', min: 0, max: 4, value: '1', unit: '×' };
+    const dim = numeric(brightness, (value) => ((words.scale = Number(value)), (words.on = words.scale > 0), told()), {
+        'aria-label': `${name}, brightness`,
+    });
+    const dye = (value) => ((words.colour = value), told(), mark());
+    const buttons = LAMPS.map(([value, label, title]) => button(label, () => dye(value), { title, data: { value } }));
+    const free = el('input', {
+        type: 'color',
+        title: 'another colour',
+        'aria-label': `${name}, colour`,
+        on: { change: () => dye(free.value) },
+    });
+    const mark = () => buttons.forEach((one) => one.setAttribute('aria-pressed', one.dataset.value === words.colour));
+    const show = (value) => {
+        words = groupWords(value);
+        on.show(words.on ? 'on' : 'off');
+        dim.show(String(words.scale));
+        if (words.colour.startsWith('#')) free.value = words.colour;
+        mark();
+    };
+    const colours = el('span', { class: 'colours', role: 'group', 'aria-label': `${name}, colour` }, ...buttons, free);
+    return { parts: [...on.parts], below: [...dim.parts, colours], show };
+}
+
+const KINDS = { bool, switch: choice, choice, int: numeric, real: numeric, text, colour, group };
+
+// root: the row. change(text) is called at most once an animation frame.
+export class Control {
+    #changed = 0;
+    #frame = 0;
+    #next = null;
+
+    constructor(option, change) {
+        this.option = option;
+        this.change = change;
+        const name = option.label ?? option.name.replace(/^(group|material)\./, '').replaceAll(/[-.]/g, ' ');
+        const id = `option-${option.name}`;
+        const labels = { id, 'aria-describedby': `${id}-why` };
+        this.made = (option.name === 'exposure' ? automatic : (KINDS[option.kind] ?? text))(
+            option,
+            (value) => this.#say(value),
+            labels,
+        );
+        this.why = el('span', { class: 'why', id: `${id}-why` });
+        this.back = button('↺', () => this.#say(option.value, true), {
+            class: 'back',
+            title: `back to ${option.value || 'empty'}`,
+            'aria-label': `${name}: back to ${option.value || 'empty'}`,
+        });
+        const head = el(
+            'div',
+            { class: 'head' },
+            el('label', { for: id, text: name }),
+            ...(this.made.wide ? [] : this.made.parts),
+            this.back,
+        );
+        const below = this.made.wide ? this.made.parts : this.made.below;
+        this.root = el(
+            'div',
+            { class: 'control', title: option.help, data: { name: option.name } },
+            head,
+            below ? el('div', { class: 'below' }, ...below) : null,
+            this.why,
+        );
+        this.show(option.value);
+    }
+
+    // value: as the program tells it; why: it changes no picture, or undefined.
+    show(value, why) {
+        if (value === undefined) value = this.option.value;
+        if (performance.now() - this.#changed > HOLD) {
+            this.made.show(value);
+            this.value = value;
+        }
+        this.back.hidden = same(this.option, value);
+        this.root.classList.toggle('idle', Boolean(why));
+        this.why.textContent = why ? `no effect: ${why}` : '';
+    }
+
+    #say(value, settled = false) {
+        this.value = value;
+        this.#changed = settled ? 0 : performance.now();
+        this.#next = value;
+        if (!this.#frame)
+            this.#frame = requestAnimationFrame(() => {
+                this.#frame = 0;
+                this.change(this.#next);
+            });
+    }
+}
+
+// Is a value the default? 1 and 1.0, on and true are the same.
+export function same(option, value) {
+    const plain = (one) => (one === 'true' ? 'on' : one === 'false' ? 'off' : String(one ?? ''));
+    const a = plain(value),
+        b = plain(option.value);
+    if (a === b) return true;
+    if (option.kind === 'int' || option.kind === 'real') return Number(a) === Number(b);
+    if (option.kind !== 'group') return false;
+    return JSON.stringify(groupWords(a)) === JSON.stringify(groupWords(b));
+}

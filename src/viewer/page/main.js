@@ -1,0 +1,135 @@
+// main.js: puts the page together.
+import { Connection } from './connection.js';
+import { App } from './app.js';
+import { Panes } from './panes.js';
+import { Input } from './input.js';
+import { Drawers, Settings } from './panels.js';
+import { Modes, Legend } from './modes.js';
+import { CityMap } from './map.js';
+import { Ask } from './ask.js';
+import { Layouts } from './compare.js';
+import { Photo } from './photo.js';
+import { Places } from './places.js';
+import { Out } from './out.js';
+import { Status } from './status.js';
+import { Choice, typing, button } from './dom.js';
+import { read, remember, restore, token } from './link.js';
+import { help } from './help.js';
+
+const $ = (id) => document.getElementById(id);
+
+const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
+const connection = new Connection(`${scheme}//${location.host}/ws?token=${encodeURIComponent(token(location.hash))}`);
+const app = new App(connection);
+const status = new Status($('status'), $('loading'), $('toasts'), app);
+const panes = new Panes($('stage'), app);
+const input = new Input($('stage'), panes, app);
+const drawers = new Drawers($('tabs'), $('left'), $('right'), () => panes.draw());
+new Settings(app, drawers, panes);
+new Modes($('modes'), app);
+new Legend($('legend'), app);
+const map = new CityMap(app, drawers, (light) => ask.lamp(light));
+const ask = new Ask(app, drawers, map, panes, input);
+new Photo(app, drawers, panes, input);
+const places = new Places(app, drawers);
+const out = new Out(app, drawers, places, $('text'));
+const layouts = new Layouts($('layouts'), app, panes);
+
+const MOVING = [
+    ['orbit', 'Orbit', 'turn about what is looked at'],
+    ['fly', 'Fly', 'go anywhere'],
+    ['walk', 'Walk', 'at eye height, on the ground, not through walls'],
+];
+const moving = new Choice($('moving'), (mode) => connection.send('navigate', { mode }));
+moving.fill(MOVING.map(([name, text, title]) => ({ name, text, title })));
+app.on('state', (state) => moving.set(state.navigate?.mode));
+app.on('welcome', () => {
+    $('scene-name').textContent = app.scene.name || 'Nocturne';
+    document.title = app.scene.name ? `${app.scene.name} – Nocturne` : 'Nocturne';
+});
+
+input.on('pick', (hit) => (input.picker ? input.picker(hit) : ask.pick(hit)));
+input.on('jump', (hit) => app.move('jump', hit));
+
+// ---- the connection ----
+
+let before = null; // what this client had set when the connection broke
+let said = '';
+function hello(again) {
+    const size = panes.size();
+    const text = `${size.width} ${size.height}`;
+    if (!again && text === said) return;
+    said = text;
+    connection.send('hello', size);
+}
+let resized = 0;
+app.on('size', () => {
+    clearTimeout(resized);
+    resized = setTimeout(() => connection.up && hello(false), 120);
+});
+connection.on('open', () => {
+    hello(true);
+    if (document.hidden) connection.send('watch', { on: false });
+});
+connection.on('closed', () => {
+    if (app.state) before = remember(app);
+});
+function fromLink() {
+    const view = read(location.hash);
+    if (!view) return false;
+    places.take(view.bookmarks);
+    restore(app, view, true);
+    return true;
+}
+app.on('ready', () => {
+    if (before) restore(app, before, false);
+    else fromLink();
+    before = null;
+});
+window.addEventListener('hashchange', () => app.state && fromLink());
+document.addEventListener('visibilitychange', () => connection.send('watch', { on: !document.hidden }));
+
+// ---- keys ----
+
+const next = (choice) => choice.names[(choice.names.indexOf(choice.name) + 1) % choice.names.length];
+const ACTS = [
+    ['Enter', 'Enter', 'who lights what is under the pointer?', () => ask.pick(input.target())],
+    ['g', 'G', 'go to what is under the pointer', () => app.move('jump', input.target())],
+    ['n', 'N', 'next way of moving', () => connection.send('navigate', { mode: next(moving) })],
+    ['y', 'Y', 'next layout', () => layouts.set(next(layouts.choice))],
+    ['v', 'V', 'the mouse looks, until Escape', () => input.lock()],
+    ['r', 'R', 'rectangle in the picture', () => ask.rectangle()],
+    ['h', 'H', 'hide all but the picture', () => document.body.classList.toggle('bare')],
+    ['f', 'F', 'full screen', () => fullScreen()],
+    ['p', 'P', 'settings', () => drawers.toggle('Settings')],
+    ['m', 'M', 'map', () => drawers.toggle('Map')],
+    ['t', 'T', 'table of lights', () => drawers.toggle('Lights')],
+    ['b', 'B', 'places and bookmarks', () => drawers.toggle('Places')],
+    ['o', 'O', 'photograph', () => drawers.toggle('Photo')],
+    ['u', 'U', 'out: save, link, command', () => drawers.toggle('Out')],
+    ['?', '?', 'this list', () => showHelp()],
+];
+const told = [
+    ['1 … 9, [ and ]', 'what is shown'],
+    ...ACTS.map(([, key, text]) => [key, text]),
+    ['Escape', 'close, let go'],
+];
+const showHelp = () => help($('help'), told);
+
+function fullScreen() {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else document.documentElement.requestFullscreen?.().catch(() => {});
+}
+
+document.addEventListener('keydown', (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event)) return;
+    if (event.key === 'Escape' && ask.cancelTool()) return;
+    const act = ACTS.find(([key]) => key === (event.key.length === 1 ? event.key.toLowerCase() : event.key));
+    if (!act || event.repeat) return;
+    event.preventDefault();
+    act[3]();
+});
+$('tabs').append(button('?', showHelp, { 'aria-label': 'Keys', title: 'key ?' }));
+
+globalThis.viewer = app; // for who looks into the page by its console, and for tests
+connection.connect();

@@ -1,0 +1,268 @@
+// panels.js: drawers with panels, and the panel of settings, which the schema makes.
+import { el, button } from './dom.js';
+import { Control, same } from './controls.js';
+
+// What the tabs open: a drawer at each side; on a narrow window, one at a time.
+export class Drawers {
+    #panels = new Map();
+
+    // changed: told when a panel opens or closes.
+    constructor(tabs, left, right, changed) {
+        this.tabs = tabs;
+        this.changed = changed;
+        this.sides = { left, right };
+        this.open = { left: null, right: null };
+        document.addEventListener('keydown', (event) => this.#escape(event));
+    }
+
+    // A panel: name of its tab, side, element, and what is done when it is seen.
+    add(name, side, root, key, seen = () => {}) {
+        const tab = button(name, () => this.toggle(name), {
+            'aria-expanded': 'false',
+            title: `key ${key}`,
+            'aria-keyshortcuts': key,
+            'aria-controls': side,
+        });
+        const head = el(
+            'div',
+            { class: 'panel-head' },
+            el('h2', { text: name }),
+            button('×', () => this.toggle(name), { class: 'close', 'aria-label': `Close ${name}` }),
+        );
+        const panel = el('section', { class: 'panel', 'aria-label': name, hidden: true }, head, root);
+        this.sides[side].append(panel);
+        this.tabs.append(tab);
+        this.#panels.set(name, { side, tab, panel, seen });
+    }
+
+    isOpen(name) {
+        return this.open[this.#panels.get(name).side] === name;
+    }
+
+    toggle(name) {
+        if (this.isOpen(name)) this.close(this.#panels.get(name).side);
+        else this.show(name);
+    }
+
+    show(name, focus = true) {
+        const { side, panel, seen } = this.#panels.get(name);
+        if (window.matchMedia('(max-width: 900px)').matches) this.close(side === 'left' ? 'right' : 'left');
+        this.close(side);
+        this.open[side] = name;
+        this.sides[side].hidden = false;
+        panel.hidden = false;
+        this.#told(side);
+        seen();
+        if (focus) panel.querySelector('.panel-head button').focus({ preventScroll: true });
+    }
+
+    close(side) {
+        const name = this.open[side];
+        if (!name) return;
+        const { panel, tab } = this.#panels.get(name);
+        const inside = panel.contains(document.activeElement);
+        this.open[side] = null;
+        panel.hidden = true;
+        this.sides[side].hidden = true;
+        this.#told(side);
+        if (inside) tab.focus();
+    }
+
+    #told(side) {
+        for (const [name, panel] of this.#panels)
+            panel.tab.setAttribute('aria-expanded', this.open[panel.side] === name);
+        document.body.classList.toggle(`${side}-open`, this.open[side] !== null);
+        this.changed();
+    }
+
+    #escape(event) {
+        if (event.key !== 'Escape' || event.defaultPrevented || document.querySelector('dialog[open]')) return;
+        const within = event.target instanceof Element ? event.target.closest('.drawer')?.id : null;
+        if (within) this.close(within);
+    }
+}
+
+// Sets of values at once; what the schema does not have is left out.
+const PRESETS = [
+    ['Evening', { hour: 19 }],
+    ['21 h', { hour: 21 }],
+    ['Deep night', { hour: 3 }],
+    ['After rain', { wet: 'on' }],
+    ['Dry', { wet: 'off' }],
+    ['All sodium', { 'group.lamps': '1,2000K' }],
+    ['All LED', { 'group.lamps': '1,4000K' }],
+    ['Lamps alone', { 'group.windows': 'off', 'group.cars': 'off' }],
+    ['Still', { preset: 'still' }],
+    ['Moving', { preset: 'interactive' }],
+];
+
+export class Settings {
+    #controls = new Map();
+    #sections = [];
+
+    constructor(app, drawers, panes) {
+        this.app = app;
+        this.panes = panes;
+        this.search = el('input', {
+            type: 'search',
+            placeholder: 'Search settings',
+            'aria-label': 'Search settings',
+            on: { input: () => this.#filter(), keydown: (event) => this.#clear(event) },
+        });
+        this.which = el('div', {
+            class: 'choice which',
+            role: 'radiogroup',
+            'aria-label': 'Which picture is set',
+            hidden: true,
+        });
+        this.presets = el('div', { class: 'presets', role: 'group', 'aria-label': 'Presets' });
+        this.list = el('div', { class: 'settings' });
+        this.none = el('p', { class: 'quiet', text: 'No setting has these words.', hidden: true });
+        const reset = button('All back to default', () => this.#reset(), { class: 'plain' });
+        drawers.add(
+            'Settings',
+            'left',
+            el(
+                'div',
+                { class: 'body' },
+                this.search,
+                this.which,
+                this.presets,
+                this.list,
+                this.none,
+                this.#size(),
+                reset,
+            ),
+            'P',
+            () => this.search.focus({ preventScroll: true }),
+        );
+        app.on('welcome', () => this.#make());
+        app.on('state', () => this.#show());
+    }
+
+    // Of this window alone: fewer pixels come faster.
+    #size() {
+        const parts = [
+            ['1', 'all of the window'],
+            ['0.75', '3/4'],
+            ['0.5', 'half'],
+            ['0.25', 'a quarter'],
+        ];
+        const box = el('select', { id: 'resolution' }, ...parts.map(([value, text]) => el('option', { value, text })));
+        box.addEventListener('change', () => {
+            this.panes.share = Number(box.value);
+            this.app.emit('size');
+        });
+        return el('div', { class: 'tools' }, el('label', { for: 'resolution', text: 'Resolution' }), box);
+    }
+
+    #make() {
+        const { look, world } = this.app.schema;
+        const groups = new Map();
+        const take = (options, set) => {
+            for (const option of options) {
+                if (option.group === 'Mode') continue; // the bar of modes and the legend have these
+                if (!groups.has(option.group)) groups.set(option.group, []);
+                groups.get(option.group).push([option, set]);
+            }
+        };
+        take(look, (name, value) => this.app.set(name, value));
+        take(world, (name, value) => this.app.setWorld(name, value));
+        const open = new Set(this.#sections.filter(({ root }) => root.open).map(({ name }) => name));
+        if (!open.size) open.add([...groups.keys()][0]);
+        this.#controls.clear();
+        this.#sections = [...groups].map(([name, options]) => {
+            const controls = options.map(([option, set]) => {
+                const control = new Control(option, (value) => set(option.name, value));
+                this.#controls.set(option.name, control);
+                return control;
+            });
+            const mark = el('span', { class: 'mark' });
+            const root = el(
+                'details',
+                { open: open.has(name) },
+                el('summary', {}, name, mark),
+                ...controls.map((one) => one.root),
+            );
+            return { name, root, controls, mark };
+        });
+        this.list.replaceChildren(...this.#sections.map(({ root }) => root));
+        this.#offer();
+        this.#filter();
+    }
+
+    #offer() {
+        const known = PRESETS.filter(([, values]) => Object.keys(values).some((name) => this.app.option(name)));
+        this.presets.replaceChildren(...known.map(([name, values]) => button(name, () => this.apply(values))));
+        this.presets.hidden = !known.length;
+    }
+
+    apply(values) {
+        for (const [name, value] of Object.entries(values)) {
+            if (this.app.schema.world.some((one) => one.name === name)) this.app.setWorld(name, value);
+            else if (this.app.schema.look.some((one) => one.name === name)) this.app.set(name, value);
+        }
+    }
+
+    #show() {
+        const { state } = this.app;
+        if (!state) return;
+        const look = this.app.values();
+        for (const [name, control] of this.#controls)
+            control.show(look[name] ?? state.world?.values?.[name], this.app.idle(name));
+        for (const { controls, mark } of this.#sections) {
+            const changed = controls.filter((one) => !same(one.option, one.value)).length;
+            mark.textContent = changed ? String(changed) : '';
+            mark.title = `${changed} changed`;
+        }
+        this.#which(state.panes?.length ?? 1);
+    }
+
+    #which(count) {
+        this.which.hidden = count < 2;
+        if (count < 2) return;
+        const names = [...Array(count).keys()].map((i) => [i, count === 2 ? 'AB'[i] : String(i + 1)]);
+        this.which.replaceChildren(
+            el('span', { text: 'Sets picture' }),
+            ...[...names, [-1, 'all']].map(([pane, text]) =>
+                button(text, () => this.app.edit(pane), {
+                    role: 'radio',
+                    'aria-checked': String(this.app.editing === pane),
+                }),
+            ),
+        );
+    }
+
+    #filter() {
+        const words = this.search.value
+            .toLowerCase()
+            .split(/\s+/)
+            .filter((one) => one);
+        let any = false;
+        for (const { name, root, controls } of this.#sections) {
+            let found = 0;
+            for (const { option, root: row } of controls) {
+                const text = `${name} ${option.name} ${option.help} ${(option.choices ?? []).join(' ')}`.toLowerCase();
+                const hit = words.every((word) => text.includes(word));
+                row.hidden = !hit;
+                found += hit;
+            }
+            root.hidden = !found;
+            any ||= found > 0;
+            if (words.length && found) root.open = true;
+        }
+        this.none.hidden = any || !words.length;
+    }
+
+    #clear(event) {
+        if (event.key !== 'Escape' || !this.search.value) return;
+        this.search.value = '';
+        this.#filter();
+        event.preventDefault();
+    }
+
+    #reset() {
+        for (const [name, control] of this.#controls)
+            if (!same(control.option, control.value)) this.apply({ [name]: control.option.value });
+    }
+}

@@ -1,0 +1,204 @@
+// panes.js: the pictures: one to six panes, each a canvas, with a second one above it for marks.
+import { el, clamp, number } from './dom.js';
+import { project } from './camera.js';
+
+const MOST_PIXELS = 1920 * 1080; // of all panes together, asked for
+
+export class Panes {
+    panes = [];
+    marks = []; // functions (context, pane, Panes) that draw above pictures
+
+    constructor(root, app) {
+        this.root = root;
+        this.app = app;
+        this.layout = 'single';
+        this.split = 0.5; // of the divider
+        this.share = 1; // of the window's resolution
+        app.on('picture', (picture) => this.#take(picture));
+        app.on('state', (state) => this.#arrange(state));
+        app.on('stats', () => this.#captions());
+        app.on('highlight', () => this.draw());
+        document.addEventListener('visibilitychange', () => this.#visible());
+        new ResizeObserver(() => this.#sized()).observe(root);
+        this.#arrange({ layout: 'single', panes: [{}] });
+    }
+
+    // What `hello` says: the pixels of one pane.
+    size() {
+        const box = this.panes[0].root.getBoundingClientRect();
+        const all = this.layout === 'divider' ? 2 : this.panes.length;
+        const ratio = Math.min(
+            window.devicePixelRatio || 1,
+            Math.sqrt(MOST_PIXELS / (box.width * box.height * all || 1)),
+        );
+        const side = (length) => clamp(Math.round(length * ratio * this.share), 16, 4096);
+        return { width: side(box.width), height: side(box.height) };
+    }
+
+    // Where a point of the window lies: { pane, x, y }, 0 to 1 in its picture; null beside it.
+    at(clientX, clientY) {
+        let pane = 0;
+        if (this.layout === 'divider') {
+            const box = this.root.getBoundingClientRect();
+            pane = clientX - box.left > box.width * this.split ? 1 : 0;
+        } else {
+            pane = this.panes.findIndex(({ root }) => {
+                const box = root.getBoundingClientRect();
+                return clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom;
+            });
+        }
+        if (pane < 0 || pane >= this.panes.length) return null;
+        const box = this.panes[pane].root.getBoundingClientRect();
+        const rect = this.rect(pane);
+        const x = (clientX - box.left - rect.x) / rect.width,
+            y = (clientY - box.top - rect.y) / rect.height;
+        return x < 0 || x > 1 || y < 0 || y > 1 ? null : { pane, x, y };
+    }
+
+    // The rectangle of a pane that its picture fills, CSS pixels.
+    rect(pane) {
+        const { root, canvas } = this.panes[pane];
+        const width = root.clientWidth,
+            height = root.clientHeight;
+        const scale = Math.min(width / canvas.width, height / canvas.height);
+        const size = { width: canvas.width * scale, height: canvas.height * scale };
+        return { x: (width - size.width) / 2, y: (height - size.height) / 2, ...size };
+    }
+
+    // A place of the scene in a pane, CSS pixels; null where it is not seen.
+    where(pane, place) {
+        const camera = this.app.stats[pane]?.camera ?? this.app.camera;
+        if (!camera || !place) return null;
+        const rect = this.rect(pane);
+        const at = project(camera, rect.width / rect.height, place);
+        return at && [rect.x + at[0] * rect.width, rect.y + at[1] * rect.height];
+    }
+
+    setSplit(split) {
+        this.split = clamp(split, 0, 1);
+        if (this.layout === 'divider' && this.panes[1])
+            this.panes[1].root.style.clipPath = `inset(0 0 0 ${this.split * 100}%)`;
+    }
+
+    draw() {
+        this.panes.forEach((pane, index) => {
+            const { overlay, root } = pane;
+            const ratio = window.devicePixelRatio || 1;
+            const width = Math.round(root.clientWidth * ratio),
+                height = Math.round(root.clientHeight * ratio);
+            if (overlay.width !== width) overlay.width = width;
+            if (overlay.height !== height) overlay.height = height;
+            const context = overlay.getContext('2d');
+            context.setTransform(ratio, 0, 0, ratio, 0, 0);
+            context.clearRect(0, 0, root.clientWidth, root.clientHeight);
+            for (const mark of this.marks) mark(context, index, this);
+        });
+    }
+
+    #arrange(state) {
+        const wanted = Math.max(state.panes?.length ?? 1, 1);
+        const changed = wanted !== this.panes.length || state.layout !== this.layout;
+        this.layout = state.layout ?? 'single';
+        while (this.panes.length > wanted) this.panes.pop().root.remove();
+        while (this.panes.length < wanted) this.#add();
+        this.states = state.panes ?? [];
+        if (changed) this.#grid(wanted);
+        this.#captions();
+        this.draw();
+    }
+
+    #add() {
+        const canvas = el('canvas', { class: 'picture', width: 16, height: 9, role: 'img', 'aria-label': 'Picture' });
+        const overlay = el('canvas', { class: 'overlay', 'aria-hidden': 'true' });
+        const caption = el('div', { class: 'caption' });
+        const root = el('div', { class: 'pane', data: { pane: this.panes.length } }, canvas, overlay, caption);
+        this.root.append(root);
+        this.panes.push({
+            root,
+            canvas,
+            overlay,
+            caption,
+            context: canvas.getContext('2d'),
+            waiting: null,
+            size: null,
+        });
+    }
+
+    #grid(count) {
+        this.root.dataset.layout = this.layout;
+        for (const { root } of this.panes) root.style.clipPath = '';
+        this.setSplit(this.split);
+        const columns =
+            this.layout === 'divider' ? 1 : bestColumns(count, this.root.clientWidth / this.root.clientHeight);
+        this.root.dataset.columns = columns;
+        this.root.dataset.rows = Math.ceil(count / columns);
+        this.app.emit('size');
+    }
+
+    #sized() {
+        this.#grid(this.panes.length);
+        this.draw();
+    }
+
+    #captions() {
+        this.panes.forEach(({ caption, root }, index) => {
+            const stats = this.app.stats[index];
+            const says = [this.states[index]?.caption ?? ''];
+            if (stats?.rmse !== undefined) says.push(`RMSE ${number(stats.rmse)} cd/m²`);
+            if (stats?.relmse !== undefined) says.push(`relMSE ${number(stats.relmse)}`);
+            if (stats?.bias !== undefined) says.push(`bias ${number(stats.bias)} cd/m²`);
+            caption.textContent = this.panes.length > 1 ? says.filter((one) => one).join(' · ') : '';
+            root.classList.toggle('edited', this.panes.length > 1 && this.app.editing === index);
+        });
+    }
+
+    async #take(picture) {
+        const pane = this.panes[picture.pane];
+        if (!pane) return this.#acknowledge(picture); // of a layout that was left
+        let bitmap = null;
+        try {
+            bitmap = await createImageBitmap(new Blob([picture.body], { type: picture.type }));
+        } catch {
+            return this.#acknowledge(picture); // a broken picture is not shown, and holds nothing up
+        }
+        const { canvas, context } = pane;
+        if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
+        if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
+        context.drawImage(bitmap, 0, 0);
+        bitmap.close();
+        canvas.dataset.n = picture.n;
+        canvas.dataset.frames = picture.frames;
+        this.app.shown(picture.input);
+        pane.size = [picture.width, picture.height];
+        this.draw();
+        this.app.emit('shown', picture);
+        this.#acknowledge(picture);
+    }
+
+    // A page that is not looked at asks for no more pictures.
+    #acknowledge(picture) {
+        if (document.hidden) this.panes[picture.pane] && (this.panes[picture.pane].waiting = picture);
+        else this.app.connection.send('ack', { pane: picture.pane, n: picture.n });
+    }
+
+    #visible() {
+        if (document.hidden) return;
+        for (const pane of this.panes) {
+            const waiting = pane.waiting;
+            pane.waiting = null;
+            if (waiting) this.#acknowledge(waiting);
+        }
+    }
+}
+
+// Columns of a grid whose cells are nearest to a picture's usual shape.
+function bestColumns(count, aspect) {
+    let best = 1,
+        off = Infinity;
+    for (let columns = 1; columns <= Math.min(count, 3); columns++) {
+        const rows = Math.ceil(count / columns);
+        const own = Math.abs(Math.log((aspect * rows) / columns / 1.6)) + 0.2 * (columns * rows - count);
+        if (own < off) [best, off] = [columns, own];
+    }
+    return best;
+}

@@ -1,0 +1,158 @@
+/* What a client's messages do, and what is told of it. */
+#include "viewer/session_parts.h"
+
+#include "viewer/out.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void session_note(session *s, const char *level, const char *text) {
+    outbox_text(s->box, OUTBOX_NOTE, s->notes++ % 8, wire_note(level, text));
+}
+
+/* The line that renders what the first pane shows. */
+static json_t *command_of(session *s) {
+    out_view view = session_view(s, 0);
+    char *line = out_command(&view);
+    json_t *text = line ? wire_text(line) : NULL;
+    free(line);
+    return text;
+}
+
+static json_t *state_of(session *s, json_t *m) {
+    json_object_set_new(m, "command", command_of(s));
+    json_object_set_new(m, "camera", mover_camera(&s->mover));
+    json_object_set_new(m, "navigate", mover_navigation(&s->mover));
+    json_object_set_new(m, "layout", json_string(wire_layouts[s->panes.layout]));
+    json_object_set_new(m, "panes", panes_state(&s->panes));
+    json_object_set_new(m, "world", world_state(s->setup->world));
+    return m;
+}
+
+void session_tell_state(session *s) {
+    outbox_text(s->box, OUTBOX_STATE, 0, wire_end(state_of(s, wire_begin("state"))));
+}
+
+/* Cameras that it can go to by name: the recipe's, then those that are found in the scene. */
+static json_t *cameras(const session *s) {
+    static const char *const found[] = { "own", "street", "aerial", "overview" };
+    const noc_recipe_info *recipe = noc_recipe_get_info(s->setup->source->recipe);
+    json_t *list = json_array();
+    for (size_t i = 0; i < recipe->camera_count; i++)
+        json_array_append_new(list, wire_text(recipe->cameras[i].name));
+    for (size_t i = 0; i < sizeof(found) / sizeof(*found); i++)
+        json_array_append_new(list, json_string(found[i]));
+    return list;
+}
+
+static json_t *scene_of(const session *s) {
+    noc_scene_info info;
+    noc_scene_get_info(world_scene(s->setup->world), &info);
+    const noc_recipe_info *recipe = noc_recipe_get_info(s->setup->source->recipe);
+    const char *name = *recipe->name ? recipe->name : s->setup->source->said_count ? s->setup->source->said[0] : "";
+    const double *lo = info.bounds_min, *hi = info.bounds_max;
+    json_t *m = json_object();
+    json_object_set_new(m, "name", wire_text(name));
+    json_object_set_new(m, "crs", wire_text(info.given_crs));
+    json_object_set_new(m, "bounds", json_pack("[[fff],[fff]]", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]));
+    json_object_set_new(m, "triangles", json_integer((json_int_t)info.triangles));
+    json_object_set_new(m, "lights", json_integer((json_int_t)info.lights));
+    json_object_set_new(m, "windows", json_integer((json_int_t)info.windows));
+    json_object_set_new(m, "cars", json_integer((json_int_t)info.cars));
+    return m;
+}
+
+void session_tell_welcome(session *s) {
+    json_t *m = wire_begin("welcome"), *schema = json_object();
+    json_object_set_new(schema, "look", look_schema(&s->panes.pane[0].look));
+    json_object_set_new(schema, "world", world_schema(s->setup->world));
+    json_object_set_new(schema, "modes", look_modes());
+    json_object_set_new(m, "schema", schema);
+    json_object_set_new(m, "cameras", cameras(s));
+    json_object_set_new(m, "scene", scene_of(s));
+    json_object_set_new(m, "state", state_of(s, json_object()));
+    outbox_text(s->box, OUTBOX_WELCOME, 0, wire_end(m));
+}
+
+double session_aspect(const session *s) { return s->width && s->height ? (double)s->width / s->height : 16.0 / 9; }
+
+static void changed(session *s) {
+    s->panes.change++;
+    s->moved = session_now();
+    s->rested = false;
+}
+
+static void do_input(session *s, const wire_input *input) {
+    s->input = input->n;
+    mover_input(&s->mover, input, session_aspect(s), session_now());
+    changed(s);
+}
+
+static void told(session *s, bool done, const char *why) {
+    if (!done)
+        session_note(s, "error", why);
+    changed(s);
+    s->told_less = true;
+}
+
+/* What only shows otherwise is shown so at once, and its mean goes on. */
+static void do_set(session *s, const wire_message *m) {
+    char why[256] = "";
+    panes_need need;
+    if (!panes_set(&s->panes, m->set.pane, m->set.name, m->set.value, &need, why, sizeof(why)))
+        session_note(s, "error", why);
+    if (need == PANES_ANEW)
+        changed(s);
+    s->redraw = s->redraw > (int)need + 1 ? s->redraw : (int)need + 1;
+    s->rested = false;
+    s->told_less = true;
+}
+
+static void do_ask(session *s, const wire_ask *ask) {
+    const pane *of = &s->panes.pane[ask->pane < s->panes.count ? ask->pane : 0];
+    ask_view view = { s->mover.camera, s->width ? s->width : 1280, s->height ? s->height : 720, of->look.render };
+    if (!s->asker)
+        s->asker = asker_create(s->setup->world, s->box, &s->in);
+    if (s->asker)
+        asker_ask(s->asker, ask, &view);
+    else
+        session_note(s, "error", "there is no memory for questions");
+}
+
+void session_do(session *s, const wire_message *m) {
+    char why[256] = "";
+    double now = session_now();
+    switch (m->kind) {
+    case WIRE_HELLO:
+        s->width = m->hello.width;
+        s->height = m->hello.height;
+        changed(s);
+        break;
+    case WIRE_INPUT: do_input(s, &m->input); break;
+    case WIRE_NAVIGATE:
+        told(s, mover_navigate(&s->mover, m->navigate.mode, m->navigate.speed, now, why, sizeof(why)), why);
+        break;
+    case WIRE_CAMERA:
+        s->input = m->camera.n ? m->camera.n : s->input;
+        told(s, mover_go(&s->mover, &m->camera.to, session_aspect(s), now, why, sizeof(why)), why);
+        break;
+    case WIRE_JUMP:
+        s->input = m->jump.n;
+        told(s, mover_jump(&s->mover, (double[2]){ m->jump.x, m->jump.y }, session_aspect(s), now, why, sizeof(why)),
+             why);
+        break;
+    case WIRE_SET: do_set(s, m); break;
+    case WIRE_WORLD: told(s, world_set(s->setup->world, m->set.name, m->set.value, why, sizeof(why)), why); break;
+    case WIRE_LAYOUT: told(s, !panes_set_layout(&s->panes, m->layout), "there is no memory for these panes"); break;
+    case WIRE_ASK: do_ask(s, &m->ask); break;
+    case WIRE_CANCEL:
+        if (s->asker)
+            asker_cancel(s->asker, m->cancel);
+        break;
+    case WIRE_SAVE:
+        if (!session_save(s, m, why, sizeof(why)))
+            session_note(s, "error", why);
+        break;
+    default: break;
+    }
+}

@@ -1,0 +1,379 @@
+#!/usr/bin/env python3
+"""The viewer's page in Chromium, as hands use it: what they do is seen in the picture, and the console is silent."""
+import json
+import sys
+
+import browser
+import tap
+import wire
+
+CITY = ['builtin:city', '--city-size', '160', '--view', 'street']
+
+# A picture as 24 x 14 colours, 0 to 255.
+LOOK = '''(() => {
+    const small = document.createElement('canvas');
+    small.width = 24;
+    small.height = 14;
+    const context = small.getContext('2d');
+    context.drawImage(document.querySelectorAll('.picture')[%d], 0, 0, 24, 14);
+    return [...context.getImageData(0, 0, 24, 14).data].filter((_, i) => i %% 4 < 3);
+})()'''
+
+
+def look(page, pane=0):
+    return page.evaluate(LOOK % pane)
+
+
+def apart(a, b):
+    """Mean difference of two pictures, of 255."""
+    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
+
+
+def differs(page, before, least, pane=0):
+    """Waits until the picture is that much another one."""
+    page.wait(f'''(() => {{
+        const before = {json.dumps(before)};
+        const now = {LOOK % pane};
+        return now.reduce((sum, x, i) => sum + Math.abs(x - before[i]), 0) / now.length > {least};
+    }})()''')
+
+
+def state(page, path):
+    return page.evaluate(f'viewer.state.{path}')
+
+
+def camera(page):
+    return page.evaluate('viewer.camera')
+
+
+def far(a, b):
+    return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
+
+
+def rests(page, frames=2):
+    """Until the newest picture is of a camera that rests, and of that many frames."""
+    page.wait(f"Number(document.querySelector('.picture').dataset.frames) >= {frames}")
+
+
+def choose(page, name, value):
+    """Sets an option by its control in the panel of settings."""
+    page.evaluate(f'''(() => {{
+        const row = document.querySelector('.control[data-name="{name}"]');
+        row.closest('details').open = true;
+        const box = row.querySelector('select, input:not([type=range])');
+        if (box.type === 'checkbox') {{
+            if (box.checked !== {json.dumps(value == 'on')}) box.click();
+        }} else {{
+            box.value = {json.dumps(value)};
+            box.dispatchEvent(new Event('change', {{ bubbles: true }}));
+        }}
+    }})()''')
+
+
+def press_text(page, text):
+    """Presses the button of the panels that says this."""
+    page.wait(f"""(() => {{
+        const all = [...document.querySelectorAll('.panel:not([hidden]) button')];
+        const one = all.find((button) => button.textContent.includes({json.dumps(text)}));
+        one?.click();
+        return Boolean(one);
+    }})()""", 60)
+
+
+def blur(page):
+    page.evaluate('document.activeElement.blur()')
+
+
+def opened(machine, link, **values):
+    page = machine.page(link, **{'width': 640, 'height': 420, **values})
+    page.wait("globalThis.viewer?.state && document.querySelector('.picture').dataset.n", 60)
+    return page
+
+
+class Tests:
+    def __init__(self, machine, served):
+        self.machine = machine
+        self.served = served
+        self.page = None
+
+    def test_opens(self):
+        self.page = opened(self.machine, self.served.link)
+        rests(self.page)
+        seen = look(self.page)
+        assert max(seen) - min(seen) > 40, f'the picture is flat: {min(seen)} to {max(seen)}'
+        assert self.page.evaluate("document.getElementById('loading').hidden")
+        assert 'frames' in self.page.evaluate("document.getElementById('status').textContent")
+
+    def test_moves(self):
+        page = self.page
+        page.press('#moving button[data-name=fly]')
+        before, start = look(page), camera(page)
+        page.key('w', up=False)
+        page.wait(f'Math.hypot(...viewer.camera.eye.map((x, i) => x - {start["eye"]}[i])) > 1')
+        page.key('w', down=False)
+        differs(page, before, 2)
+        rests(page)
+        before, start = look(page), camera(page)
+        page.drag(300, 200, 420, 190)
+        page.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {start["target"]}[i])) > 0.5')
+        differs(page, before, 2)
+        assert far(camera(page)['eye'], start['eye']) < 0.5, 'a drag has moved the eye'
+        rests(page)
+        quiet = page.evaluate('viewer.sent')
+        self.machine.listen(0.5)
+        assert page.evaluate('viewer.sent') == quiet, 'inputs were sent while nothing was pressed'
+
+    def test_jumps(self):
+        page = self.page
+        start = camera(page)
+        page.click(320, 300, count=2)
+        page.wait(f'Math.hypot(...viewer.camera.eye.map((x, i) => x - {start["eye"]}[i])) > 0.2')
+        page.key('b')
+        page.press('#right .panel:not([hidden]) .tools[role=group] button')
+        page.wait(f'viewer.state.camera.name === "{page.evaluate("viewer.cameras[0].name ?? viewer.cameras[0]")}"')
+        page.key('Escape')
+        rests(page)
+
+    def test_picks(self):
+        page = self.page
+        page.click(320, 330)
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        text = page.evaluate("document.querySelector('.answer').innerText")
+        assert ' lx' in text and 'class' in text, text
+        page.press('table.rows tbody tr')
+        assert page.evaluate('viewer.highlighted.length') >= 1
+        shares = page.evaluate('''[...document.querySelectorAll('table.rows tbody tr td:nth-child(3)')]
+            .map((cell) => parseFloat(cell.textContent))''')
+        assert 0 < sum(shares) < 101, shares
+        press_text(page, 'CSV')
+        name, data = page.downloaded()
+        lines = data.decode().strip().splitlines()
+        assert name.endswith('.csv') and 'share' in lines[0] and len(lines) > 2, (name, lines[:2])
+        blur(page)
+        page.key('t')
+
+    def test_shows_modes(self):
+        page = self.page
+        before = look(page)
+        names = page.evaluate("[...document.querySelectorAll('#modes button')].map((one) => one.dataset.name)")
+        assert len(names) > 10, names
+        for name in names[1:]:
+            page.evaluate(f"document.querySelector('#modes button[data-name=\"{name}\"]').click()")
+            page.wait(f"viewer.state.panes[0].values.show === '{name}'")
+            differs(page, before, 2)
+            before = look(page)
+        page.evaluate("document.querySelector('#modes button').click()")
+        page.wait(f"viewer.state.panes[0].values.show === '{names[0]}'")
+        page.wait("document.getElementById('legend').hidden")
+
+    def test_has_legends(self):
+        page = self.page
+        page.evaluate("document.querySelector('#modes button[data-name=depth]').click()")
+        page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        before = look(page)
+        page.evaluate("document.querySelector('#legend .handle.high').focus()")
+        for _ in range(6):
+            page.key('ArrowLeft')
+        differs(page, before, 2)
+        page.evaluate("document.querySelector('#modes button').click()")
+        page.wait("document.getElementById('legend').hidden")
+
+    def test_sets_options(self):
+        page = self.page
+        before = look(page)
+        page.key('p')
+        choose(page, 'tonemap', 'linear')
+        differs(page, before, 1)
+        page.wait("document.querySelector('.control[data-name=tonemap] .back').offsetParent !== null")
+        choose(page, 'method', 'is')
+        page.wait("viewer.state.panes[0].values.method === 'is'")
+        why = page.evaluate("document.querySelector('.control[data-name=candidates] .why').textContent")
+        assert 'method' in why, f'why candidates are idle: {why!r}'
+        choose(page, 'method', 'ris')
+        choose(page, 'tonemap', 'filmic')
+        page.press('input[type=search]')
+        page.type('radius')
+        page.wait("document.querySelector('.control[data-name=method]').offsetParent === null")
+        assert page.evaluate("document.querySelector('.control[data-name=radius]').offsetParent !== null")
+        page.key('Escape')
+        blur(page)
+        page.key('p')
+        page.wait("document.getElementById('left').hidden")
+
+    def test_two_share_the_world(self):
+        page = self.page
+        other = opened(self.machine, self.served.link)
+        rests(page)
+        before = look(page)
+        group = 'group.lamps'
+        choose(other, group, 'on')
+        other.evaluate(f'viewer.setWorld("{group}", "off")')
+        differs(page, before, 3)
+        assert state(page, f'world.values["{group}"]').startswith('off')
+        seen = camera(page)
+        other.evaluate("viewer.goTo('aerial')")
+        other.wait("viewer.state.camera.name === 'aerial'")
+        assert far(camera(page)['eye'], seen['eye']) < 1e-6, 'the other one has moved this camera'
+        other.evaluate(f'viewer.setWorld("{group}", viewer.option("{group}").value)')
+        page.wait(f'!viewer.state.world.values["{group}"].startsWith("off")')
+        assert not other.errors, other.errors
+        other.close()
+
+    def test_divides(self):
+        page = self.page
+        page.press('#layouts button[data-name=divider]')
+        page.wait("document.querySelectorAll('.pane').length === 2")
+        page.evaluate('viewer.edit(1)')
+        page.wait("[0, 1].every((i) => document.querySelectorAll('.picture')[i].dataset.n)")
+        page.evaluate("viewer.set('exposure', '0')")
+        page.wait("viewer.state.panes[1].values.exposure === '0'")
+        differs(page, look(page, 0), 10, pane=1)
+        x, y = page.middle('.divider')
+        page.drag(x, y, x - 150, y)
+        at = page.evaluate("Number(document.querySelector('.divider').getAttribute('aria-valuenow'))")
+        assert 20 < at < 32, at
+        page.key('ArrowRight')
+        assert page.evaluate("Number(document.querySelector('.divider').getAttribute('aria-valuenow'))") == at + 2
+        page.evaluate('viewer.edit(0)')
+
+    def test_compares(self):
+        page = self.page
+        method = state(page, 'panes[0].values.method')
+        page.press('#layouts button[data-name=methods]')
+        page.wait("document.querySelectorAll('.pane').length >= 4")
+        page.wait("[...document.querySelectorAll('.picture')].every((one) => one.dataset.n)", 60)
+        page.press('#layouts button[data-name=difference]')
+        page.wait("[...document.querySelectorAll('.caption')].some((one) => one.textContent.includes('RMSE'))", 60)
+        page.press('#layouts button[data-name=single]')
+        page.wait("document.querySelectorAll('.pane').length === 1")
+        assert state(page, 'panes[0].values.method') == method, 'all methods have changed this look'
+
+    def test_saves(self):
+        page = self.page
+        for what, begins in (('png', b'\x89PNG'), ('exr', b'\x76\x2f\x31\x01'), ('recipe', b'')):
+            page.evaluate(f"viewer.save('{what}', {{ pane: 0 }})")
+            name, data = page.downloaded()
+            assert data.startswith(begins) and len(data) > 50, (name, data[:20])
+            if what == 'recipe':
+                assert b'nocturne: 1' in data, data[:200]
+        command = state(page, 'command')
+        assert command.startswith('nocturne render ') and '--eye' in command, command
+
+    def test_links(self):
+        page = self.page
+        page.evaluate("viewer.set('tonemap', 'reinhard')")
+        page.wait("viewer.state.panes[0].values.tonemap === 'reinhard'")
+        page.key('u')
+        press_text(page, 'Copy link')
+        link = page.wait("location.hash.includes('view=') && location.href")
+        # in the clipboard, or shown where the browser lets nobody write there
+        copied = "document.getElementById('toasts').innerText.includes('copied')"
+        page.wait(f"document.getElementById('text').open || {copied}")
+        if page.evaluate("document.getElementById('text').open"):
+            page.key('Escape')
+            page.wait("!document.getElementById('text').open")
+        other = opened(self.machine, link)
+        other.wait("viewer.state.panes[0].values.tonemap === 'reinhard'")
+        other.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {camera(page)['eye']}[i])) < 0.01")
+        assert not other.errors, other.errors
+        other.close()
+        page.evaluate("viewer.set('tonemap', 'filmic')")
+        blur(page)
+        page.key('u')
+
+    def test_bookmarks(self):
+        page = self.page
+        there = camera(page)
+        page.key('b')
+        page.press('#right .panel:not([hidden]) form input')
+        page.type('corner')
+        page.key('Enter')
+        page.wait("document.querySelector('.bookmarks .name')?.textContent === 'corner'")
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("viewer.state.camera.name === 'aerial'")
+        page.press('.bookmarks .name')
+        page.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {there['eye']}[i])) < 0.01")
+        blur(page)
+        page.key('b')
+
+    def test_by_keys_alone(self):
+        page = self.page
+        blur(page)
+        page.evaluate("document.getElementById('stage').focus()")
+        page.key('?', shift=True)
+        page.wait("document.getElementById('help').open")
+        page.key('Escape')
+        page.wait("!document.getElementById('help').open")
+        seen = []
+        for _ in range(40):  # the tab key comes to every panel's button
+            page.key('Tab')
+            seen.append(page.evaluate('document.activeElement.textContent'))
+            if seen[-1] == 'Settings':
+                break
+        assert seen[-1] == 'Settings', seen
+        page.key('Enter')
+        page.wait("!document.getElementById('left').hidden")
+        page.key('Escape')
+        page.wait("document.getElementById('left').hidden")
+        assert page.evaluate('document.activeElement.textContent') == 'Settings', 'the focus did not come back'
+        page.evaluate("document.querySelector('#modes button[tabindex=\"0\"]').focus()")
+        page.key('ArrowRight')
+        name = page.evaluate('document.activeElement.dataset.name')
+        page.wait(f"viewer.state.panes[0].values.show === '{name}'")
+        page.key('ArrowLeft')
+        page.wait("viewer.state.panes[0].values.show === 'picture'")
+
+    def test_on_a_phone(self):
+        phone = opened(self.machine, self.served.link, width=390, height=844, phone=True)
+        for width, height in ((390, 844), (844, 390)):
+            phone.viewport(width, height, True)
+            self.machine.listen(0.3)
+            wide = phone.evaluate('document.documentElement.scrollWidth')
+            assert wide <= width, f'the page is {wide} wide on {width}'
+        before = phone.wait('viewer.camera')
+        phone.touch('touchStart', [(400, 250)])
+        for x in range(410, 500, 10):
+            phone.touch('touchMove', [(x, 250)])
+        phone.touch('touchEnd', [])
+        phone.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {before["target"]}[i])) > 0.3')
+        phone.press('#tabs button')
+        phone.wait("!document.getElementById('left').hidden")
+        box = phone.evaluate("['clientWidth', 'clientHeight'].map((side) => document.getElementById('stage')[side])")
+        assert min(box) > 150, f'the picture has {box} left'
+        assert not phone.errors, phone.errors
+        phone.close()
+
+    def test_comes_back(self):
+        page = self.page
+        seen = camera(page)
+        assert not page.errors, page.errors
+        status, said = self.served.end(wait=30 * browser.scale())
+        assert status in (0, 130), (status, said)
+        page.wait("!document.getElementById('loading').hidden")
+        self.served = wire.Program(*CITY, port=self.served.port)
+        page.wait("document.getElementById('loading').hidden", 60)
+        page.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {seen['eye']}[i])) < 0.01")
+        page.errors = [one for one in page.errors if 'WebSocket' not in one]  # what the browser says of tries
+
+    def test_silent(self):
+        assert not self.page.errors, self.page.errors
+
+
+def main():
+    if not browser.program():
+        print('1..0 # SKIP Chromium is not here')
+        return
+    functions = tap.tests_of(Tests)
+    if len(sys.argv) > 1:  # these alone
+        functions = [one for one in functions if one.__name__[5:] in ('opens', *sys.argv[1:])]
+    with browser.Browser() as machine:
+        tests = Tests(machine, wire.Program(*CITY))
+        try:
+            tap.run(functions, tests)
+        finally:
+            if tests.served.alive():
+                tests.served.end()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,360 @@
+"""What a client of `nocturne view` gets: moving and resting pictures, layouts, edits that two clients share, answers;
+and how the program begins and ends."""
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+import tap
+from wire import TOKEN, Client, Closed, Picture, Program
+
+CITY = ("builtin:city", "--city-size", "150", "--threads", "2")
+
+
+def enter(p, width=320, height=180):
+    c = Client(p)
+    assert c.status == 101, c.status
+    c.say("hello", width=width, height=height)
+    c.welcome = c.text_of("welcome")
+    c.picture()
+    return c
+
+
+def said(c, t, wanted=lambda m: True, timeout=180):
+    return c.wait_for(lambda m: isinstance(m, dict) and m["t"] == t and wanted(m), timeout)
+
+
+def near(a, b, within=1e-3):
+    return all(abs(x - y) < within for x, y in zip(a, b))
+
+
+def test_a_picture_shows_the_newest_input(p):
+    c = enter(p)
+    eye = said(c, "stats")["camera"]["target"]
+    for n in range(1, 31):
+        c.say("input", n=n, seconds=0.03, turn=[0.01, 0], keys=[])
+    picture = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 30)
+    assert picture.moving
+    c.say("input", n=31, seconds=0.03, turn=[0.2, 0])
+    figures = said(c, "stats")
+    picture = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 31)
+    assert not near(figures["camera"]["target"], eye, 1e-6)
+    c.close()
+
+
+def test_frames_are_dropped_not_queued(p):
+    """While a picture is not acknowledged there is no other; then comes the newest."""
+    c = enter(p)
+    c.say("input", n=1, turn=[0.01, 0])
+    first = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 1, ack=False)
+    for n in range(2, 40):
+        c.say("input", n=n, turn=[0.01, 0])
+        time.sleep(0.02)
+    try:
+        other = c.wait_for(lambda m: isinstance(m, Picture), timeout=1.5, ack=False)
+        assert False, "picture %d came beside %d" % (other.number, first.number)
+    except socket.timeout:
+        pass
+    c.say("ack", pane=0, n=first.number)
+    held = c.wait_for(lambda m: isinstance(m, Picture), ack=False)
+    assert held.input == 39, held.input
+    c.close()
+
+
+def test_rest_is_whole_exact_and_ends(p):
+    c = enter(p, 320, 180)
+    c.say("set", name="frames", value="12")
+    c.say("input", n=1, turn=[0.01, 0])
+    moving = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 1)
+    pictures = []
+    while not pictures or pictures[-1].codec != 1 or pictures[-1].frames < 12:
+        pictures.append(c.picture())
+    last = pictures[-1]
+    assert (last.width, last.height) == (320, 180) and last.frames >= 12 and not last.moving
+    assert last.body[:8] == b"\x89PNG\r\n\x1a\n"
+    errors = [x.error for x in pictures if x.error == x.error and x.width == 320]
+    assert errors and 0 < errors[-1] < 1, errors
+    try:
+        c.picture(timeout=2)
+        assert False, "a picture after the last one"
+    except socket.timeout:
+        pass
+    before = p.cpu()
+    time.sleep(2)
+    assert p.cpu() - before < 0.1, "it renders at rest"
+    c.close()
+
+
+def test_display_keeps_the_mean(p):
+    """Exposure and modes show at once, and nothing begins anew."""
+    c = enter(p, 320, 180)
+    c.say("set", name="frames", value="12")
+    c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 12)
+    c.say("set", name="exposure", value="2")
+    again = c.picture()
+    assert again.frames >= 12 and (again.width, again.height) == (320, 180), again.frames
+    c.say("set", name="show", value="normal")
+    mode = c.wait_for(lambda m: isinstance(m, Picture) and m.flags & 4)
+    assert mode.frames >= 12, mode.frames
+    c.say("set", name="method", value="is")
+    c.wait_for(lambda m: isinstance(m, Picture) and m.frames < 12)
+    c.close()
+
+
+def test_layouts(p):
+    c = enter(p, 160, 90)
+    for name, panes in ("divider", 2), ("methods", 6), ("difference", 3), ("single", 1):
+        c.say("layout", name=name)
+        state = said(c, "state", lambda m: m["layout"] == name)
+        assert len(state["panes"]) == panes
+        seen = set()
+        while len(seen) < panes:
+            seen.add(c.picture().pane)
+        assert seen == set(range(panes))
+        if name == "difference":
+            figures = said(c, "stats", lambda m: m["pane"] == 2)
+            assert figures["rmse"] > 0 and 0.2 < figures["bias"] < 5, figures
+    c.close()
+
+
+def test_what_cannot_be_set_is_told(p):
+    c = enter(p)
+    for values in ({"name": "method", "value": "magic"}, {"name": "no-such", "value": "1"},
+                   {"name": "draws", "value": "0"}, {"name": "environment", "value": "/etc/passwd"},
+                   {"name": "method", "value": "ris", "pane": 5}):
+        c.say("set", **values)
+        note = said(c, "note")
+        assert note["level"] == "error" and note["text"], note
+    for values in {"name": "no-such", "value": "1"}, {"name": "group.none", "value": "off"}:
+        c.say("world", **values)
+        assert said(c, "note")["level"] == "error"
+    c.say("camera", name="nowhere")
+    assert said(c, "note")["level"] == "error"
+    c.say("set", name="method", value="restir")
+    c.picture()
+    c.close()
+
+
+def test_each_client_has_its_own_camera(p):
+    a, b = enter(p), enter(p)
+    a.say("camera", eye=[1, 2, 30], target=[4, 5, 6], fov=40, n=1)
+    said(a, "stats", lambda m: near(m["camera"]["eye"], [1, 2, 30]) and m["camera"]["fov"] == 40)
+    b.say("input", n=1, turn=[0.01, 0])
+    assert not near(said(b, "stats")["camera"]["eye"], [1, 2, 30])
+    a.say("set", name="method", value="is")
+    assert said(a, "state")["panes"][0]["values"].get("method", "is") == "is"
+    b.say("set", name="draws", value="7")
+    assert said(b, "state")["panes"][0]["values"].get("method", "ris") != "is"
+    a.close()
+    b.close()
+
+
+def test_edits_are_shared(p):
+    a, b = enter(p), enter(p)
+    a.say("set", name="frames", value="12")
+    b.say("set", name="frames", value="12")
+    for c in a, b: # both rest
+        c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 12)
+    a.say("world", name="group.lamps", value="0.5,2200K")
+    for c in a, b:
+        said(c, "state", lambda m: m["world"]["values"]["group.lamps"] == "0.5,2200K")
+        c.wait_for(lambda m: isinstance(m, Picture) and m.frames < 12) # it began anew
+    c = enter(p)
+    assert c.welcome["state"]["world"]["values"]["group.lamps"] == "0.5,2200K"
+    a.say("world", name="group.lamps", value="on,own")
+    for c in a, b, c:
+        c.close()
+
+
+def ask(c, what, timeout=180, **values):
+    c.say("ask", what=what, **values)
+    while True:
+        answer = said(c, "answer", lambda m: m["id"] == values["id"], timeout)
+        if answer["done"] >= 1:
+            return answer
+
+
+def test_who_lights_this(p):
+    c = enter(p)
+    answer = ask(c, "pixel", id=1, pane=0, x=0.5, y=0.9)
+    assert answer["lux"] > 0 and len(answer["place"]) == 3 and answer["class"], answer
+    shares = [row["share"] for row in answer["rows"]]
+    assert abs(sum(shares) - 1) < 0.02 and all(row["error"] >= 0 for row in answer["rows"]), sum(shares)
+    named = [row["share"] for row in answer["rows"] if row["light"] >= 0]
+    assert named == sorted(named, reverse=True) and len(named) > 1
+    lamp = ask(c, "lamp", id=2, light=answer["rows"][0]["light"])
+    assert near(lamp["place"], answer["rows"][0]["place"], 0.01) and lamp["lumens"] > 0
+    assert ask(c, "region", id=3, pane=0, rect=[0.4, 0.8, 0.6, 0.95])["lux"] > 0
+    c.say("save", id=9, what="csv", of=1)
+    file = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2)
+    name, text = file.body[:file.name_size].decode(), file.body[file.name_size:].decode()
+    assert file.number == 9 and name == "lights.csv" and len(text.splitlines()) == 1 + len(answer["rows"]), text
+    c.say("save", id=10, what="csv", of=12345)
+    assert said(c, "note")["level"] == "error"
+    assert "refused" in ask(c, "lamp", id=4, light=999999999)
+    c.say("ask", id=5, what="lights")
+    lights = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 3)
+    count = int.from_bytes(lights.body[4:8], "little")
+    assert lights.number == 5 and count > 10 and len(lights.body) >= 8 + 24 * count
+    c.close()
+
+
+def test_questions_can_be_taken_back(p):
+    c = enter(p)
+    for i in range(30): # more than may wait: the oldest are refused, and the last is answered
+        c.say("ask", id=i, what="region", pane=0, rect=[0, 0, 1, 1])
+    for i in range(29):
+        c.say("cancel", id=i)
+    answer = ask(c, "pixel", id=100, pane=0, x=0.5, y=0.9)
+    assert answer["lux"] > 0
+    c.close()
+
+
+def test_many_come_and_go(p):
+    """Connections that end in all states leave nothing behind."""
+    time.sleep(1)
+    before = p.threads()
+    for i in range(40):
+        c = Client(p)
+        if c.status == 101 and i % 4:
+            c.say("hello", width=200, height=100)
+            c.say("layout", name=("single", "divider", "methods", "difference")[i // 4 % 4])
+            c.say("ask", id=1, what="pixel", pane=0, x=0.5, y=0.5)
+            if i % 4 > 1:
+                time.sleep(0.1)
+        c.close()
+    deadline = time.monotonic() + 90
+    while p.threads() > before and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert p.threads() <= before, "%d threads are left of %d" % (p.threads(), before)
+    enter(p).close()
+
+
+# ---- how it begins and ends
+
+def run(*arguments, timeout=60):
+    done = subprocess.run([os.environ["NOC_PROGRAM"], "view", *arguments], capture_output=True, text=True,
+                          timeout=timeout, check=False)
+    return done.returncode, done.stderr
+
+
+def test_ports_and_addresses_that_cannot_be(p):
+    for arguments, status, text in ((("--port", str(p.port)), 1, "--port 0 takes one"),
+                                    (("--port", "70000"), 2, "--port"),
+                                    (("--address", "256.1.1.1"), 1, "no address of this machine"),
+                                    (("--address", "8.8.8.8"), 1, "cannot listen at 8.8.8.8"),
+                                    (("--address", ""), 2, "--address"), (("--token", "short"), 2, "--token"),
+                                    (("--token", "0123456789abcdef/../"), 2, "--token"),
+                                    (("--clients", "0"), 2, "--clients")):
+        got = run("builtin:single", *arguments)
+        assert got[0] == status and text in got[1] and len(got[1].splitlines()) <= 2, (arguments, got)
+
+
+def test_inputs_that_cannot_be(p):
+    got = run("nowhere.gml", "--port", "0")
+    assert got[0] == 1 and got[1].count("nowhere.gml") == 1, got
+    assert run("builtin:nothing", "--port", "0")[0] in (1, 2)
+
+
+def test_an_interruption_ends_it(p):
+    for number, status in (signal.SIGINT, 130), (signal.SIGTERM, 143):
+        q = Program(*CITY)
+        clients = [enter(q, 640, 360) for _ in range(2)]
+        clients[0].say("layout", name="methods")
+        clients[1].say("ask", id=1, what="region", pane=0, rect=[0, 0, 1, 1])
+        start = time.monotonic()
+        ended, text = q.end(number)
+        assert ended == status, (ended, text)
+        assert time.monotonic() - start < 10
+        assert not text.strip(), text
+
+
+def test_an_interruption_is_before_what_waits(p):
+    """Each of these takes some 40 ms."""
+    q = Program(*CITY)
+    c = enter(q)
+    for i in range(600):
+        c.say("camera", name=("street", "overview")[i % 2])
+    time.sleep(1)
+    start = time.monotonic()
+    ended, text = q.end()
+    assert ended == 130 and time.monotonic() - start < 5, (ended, text, time.monotonic() - start)
+
+
+def test_an_interruption_while_it_loads(p):
+    q = Program("builtin:city", "--city-size", "1500")
+    c = Client(q)
+    c.say("hello", width=320, height=180)
+    assert said(c, "loading")["done"] >= 0
+    start = time.monotonic()
+    ended, text = q.end()
+    assert ended == 130 and time.monotonic() - start < 20, (ended, text, time.monotonic() - start)
+
+
+def file_of(c, what, **values):
+    c.say("save", id=77, what=what, **values)
+    message = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2 or
+                         isinstance(m, dict) and m["t"] == "note" and m["level"] == "error")
+    assert isinstance(message, Picture), message
+    assert message.number == 77
+    return message.body[:message.name_size].decode(), message.body[message.name_size:]
+
+
+def test_files(p):
+    """Pictures with the metadata of render, and a recipe and a command line that render the view."""
+    c = enter(p)
+    c.say("set", name="seed", value="5")
+    c.say("world", name="group.lamps", value="0.5,2200K")
+    said(c, "state", lambda m: m["world"]["values"]["group.lamps"] == "0.5,2200K")
+    c.say("input", n=1, turn=[0.1, 0]) # what is moving is saved whole, too
+    name, png = file_of(c, "png", pane=0)
+    assert int.from_bytes(png[16:20], "big") == 320 and int.from_bytes(png[20:24], "big") == 180
+    assert name == "night.png" and png.startswith(b"\x89PNG")
+    for text in (b"group\0lamps=0.5,2200K", b"seed\0" + b"5", b"camera-eye\0", b"method\0", b"scene-lights\0"):
+        assert text in png, text
+    name, exr = file_of(c, "exr", pane=0)
+    assert name == "night.exr" and exr.startswith(b"\x76\x2f\x31\x01") and b"auto-ev100" in exr
+    cameras = [dict(name="a", eye=[0, 0, 20], target=[9, 9, 0], fov=50),
+               dict(name="b", eye=[5, 0, 20], target=[9, 9, 0], fov=50)]
+    name, recipe = file_of(c, "recipe", cameras=cameras)
+    assert name == "view.yaml" and b"lamps=0.5,2200K" in recipe and b"bookmarks" in recipe, recipe
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, name)
+        open(path, "wb").write(recipe)
+        subprocess.run([os.environ["NOC_PROGRAM"], "render", path, "--size", "32x18", "--frames", "1", "-q", "-o",
+                        os.path.join(folder, "a.png")], check=True)
+        assert os.path.getsize(os.path.join(folder, "a.png")) > 100
+    for what in (dict(what="png", pane=4), dict(what="csv", of=12345)):
+        c.say("save", id=78, **what)
+        said(c, "note", lambda m: m["level"] == "error")
+    c.say("world", name="group.lamps", value="on,own")
+    c.close()
+
+
+def test_tokens_differ(p):
+    links = set()
+    for _ in range(2):
+        q = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:single", "--port", "0"], text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        links.add(q.stdout.readline().strip().split("token=")[1])
+        q.terminate()
+        q.communicate()
+    assert len(links) == 2 and all(len(token) == 32 for token in links), links
+
+
+def main():
+    p = Program(*CITY, "--clients", "6")
+    try:
+        tap.run(tap.tests_of(sys.modules[__name__]), p)
+    finally:
+        status, text = p.end()
+        print("# ended with %s: %s" % (status, text[-2000:]))
+        if status != 130 or "nothing was estimated" in text:
+            sys.exit(1)
+
+
+main()
