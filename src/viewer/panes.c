@@ -29,7 +29,7 @@ static void drop(pane *of) {
 
 void panes_finish(panes *p) {
     for (int i = 0; i < WIRE_PANES; i++) {
-        noc_view_destroy(p->pane[i].view);
+        drop(&p->pane[i]);
         json_decref(p->pane[i].legend);
     }
     noc_image_encoder_destroy(p->encoder);
