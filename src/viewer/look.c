@@ -16,9 +16,9 @@ static const noc_option own_options[] = {
       "frames that are averaged, then the picture rests; 0 = without end" },
     { "smooth", "Display", NOC_OPTION_BOOL, offsetof(L, smooth), 0, 1, NULL, "",
       "moving pictures are calm: for the eye alone, not in figures or files" },
-    { "show-log", "Mode", NOC_OPTION_CHOICE, offsetof(L, channel.scale), 0, 0, "auto|off|on", "",
-      "logarithmic colour bar; auto: as suits the numbers" }, /* by noc_bar_scale */
-    { "show-isolines", "Mode", NOC_OPTION_INT, offsetof(L, channel.round_isolines), 0, NOC_ISOLINES, NULL, "",
+    { "show-scale", "Mode", NOC_OPTION_CHOICE, offsetof(L, channel.scale), 0, 0, "auto|linear|log", "",
+      "steps of the colour bar; auto: as suits the numbers" }, /* by noc_bar_scale */
+    { "isolines", "Mode", NOC_OPTION_INT, offsetof(L, channel.round_isolines), 0, NOC_ISOLINES, NULL, "",
       "lines at about so many round values; 0 = none" },
     { NULL },
 };
@@ -282,7 +282,7 @@ json_t *look_values(const look *l) {
 static bool of_map(const noc_option *o) { return !strncmp(o->name, "environment-", 12); }
 
 json_t *look_idle(const look *l, bool has_map) {
-    static const char *const of_bars[] = { "show-range", "show-log", "show-isolines", NULL };
+    static const char *const of_bars[] = { "show-range", "show-scale", "isolines", NULL };
     json_t *idle = json_object();
     char why[200];
     for (const noc_option *o = noc_render_options(); o->name; o++) {

@@ -121,11 +121,11 @@ static void a_frame_refuses_no_look(void **state) {
     set(&l, "show", "depth"); /* other numbers have another range */
     assert_false(look_set(&l, "show-range", "0,50", why, sizeof(why)));
     assert_non_null(strstr(why, "begins above 0"));
-    set(&l, "show-log", "off");
+    set(&l, "show-scale", "linear");
     set(&l, "show-range", "0,50");
-    assert_false(look_set(&l, "show-log", "auto", why, sizeof(why)));
+    assert_false(look_set(&l, "show-scale", "auto", why, sizeof(why)));
     set(&l, "show-range", "auto");
-    set(&l, "show-log", "on");
+    set(&l, "show-scale", "log");
     char text[60];
     look_get(&l, "show-range", text, sizeof(text));
     assert_string_equal(text, "auto");
@@ -206,8 +206,8 @@ static void words_say_what_differs(void **state) {
     set(&l, "show-range", "1,200");
     set(&l, "exposure", "3"); /* numbers have none */
     assert_words(&l, "--show depth --show-range 1,200");
-    set(&l, "show-log", "off");
-    set(&l, "show-isolines", "5");
+    set(&l, "show-scale", "linear");
+    set(&l, "isolines", "5");
     assert_words(&l, "--show depth --show-range 1,200 --show-scale linear --isolines 5");
     set(&l, "show", "class"); /* which has no bar */
     assert_words(&l, "--show class");

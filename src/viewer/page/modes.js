@@ -56,7 +56,7 @@ export class Legend {
             value: 0,
             id: 'isolines',
             'aria-label': 'Isolines',
-            on: { change: () => app.set('show-isolines', this.lines.value || 0) },
+            on: { change: () => app.set('isolines', this.lines.value || 0) },
         });
         this.tools = el('div', { class: 'tools' }, this.auto, this.log, el('label', {}, 'isolines ', this.lines));
         this.labels = el('ul', { class: 'labels' });
@@ -76,7 +76,7 @@ export class Legend {
         const values = this.app.values();
         this.root.hidden = !legend || mode.name === 'picture';
         if (this.root.hidden) return;
-        const text = JSON.stringify([legend, mode.name, values['show-isolines'], values['show-range']]);
+        const text = JSON.stringify([legend, mode.name, values.isolines, values['show-range']]);
         if (text === this.#drawn) return;
         this.#drawn = text;
         const unit = legend.unit && !legend.title.includes('[') ? ` [${legend.unit}]` : '';
@@ -111,7 +111,7 @@ export class Legend {
         context.fillRect(0, 0, 256, 1);
         this.log.setAttribute('aria-pressed', Boolean(legend.log));
         this.auto.setAttribute('aria-pressed', !values['show-range'] || values['show-range'] === 'auto');
-        if (document.activeElement !== this.lines) this.lines.value = Number(values['show-isolines']) || 0;
+        if (document.activeElement !== this.lines) this.lines.value = Number(values.isolines) || 0;
         this.ticks.replaceChildren(
             ...ticks(legend).map((value) => {
                 const tick = el('span', { text: number(value) });
@@ -180,7 +180,7 @@ export class Legend {
 
     #toggle() {
         this.app.set('show-range', 'auto'); // a logarithm does not begin at 0
-        this.app.set('show-log', this.legend?.log ? 'off' : 'on');
+        this.app.set('show-scale', this.legend?.log ? 'linear' : 'log');
     }
 }
 
