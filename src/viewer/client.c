@@ -1,6 +1,7 @@
 #include "viewer/client.h"
 #include "viewer/wire.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,10 @@ struct client {
     double messages, bytes; /* that it may send now */
     double counted;         /* when those were counted */
     bool begun;
-    double asked; /* since when something waits for it to read; 0: nothing does */
+    uint64_t heard; /* bytes of the connection that were counted */
+    double room;    /* bytes of it that may come */
+    double since;   /* when that was counted; 0: never */
+    double asked;   /* since when something waits for it to read; 0: nothing does */
     char why[128];
     size_t size; /* of the message so far */
     char text[WIRE_TEXT];
@@ -51,8 +55,7 @@ struct lws *client_socket(const client *c) {
 session *client_session(const client *c) { return c->session; }
 outbox *client_outbox(const client *c) { return c->box; }
 
-/* false: it has sent more than it may. */
-static bool within_rates(client *c, size_t size, double now) {
+bool client_counts(client *c, size_t size, double now) {
     double spent = c->begun ? now - c->counted : CLIENT_AT_ONCE;
     c->begun = true;
     c->counted = now;
@@ -79,7 +82,7 @@ static int take(client *c, const char **why) {
 
 int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why) {
     *why = "too many messages, or bytes, in a second";
-    if (!within_rates(c, size, now)) /* pieces count, so that empty ones are no way around it */
+    if (!client_counts(c, size, now)) /* pieces count, so that empty ones are no way around it */
         return POLICY;
     *why = "a binary message";
     if (binary)
@@ -90,6 +93,16 @@ int client_receive(client *c, const void *data, size_t size, bool binary, bool l
     memcpy(c->text + c->size, data, size);
     c->size += size;
     return last ? take(c, why) : 0;
+}
+
+bool client_heard(client *c, uint64_t bytes, double now) {
+    /* a message of a byte has a head of six, and what came before it was looked at first is no flood */
+    static const double rate = CLIENT_BYTES + 16.0 * CLIENT_MESSAGES, most = rate * (CLIENT_AT_ONCE + 1);
+    c->room = c->since > 0 ? fmin(most, c->room + (now - c->since) * rate) : most;
+    c->since = now;
+    c->room -= (double)(bytes - c->heard);
+    c->heard = bytes;
+    return c->room >= 0;
 }
 
 void client_asked(client *c, double now) { c->asked = c->asked > 0 ? c->asked : now; }

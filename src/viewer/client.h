@@ -32,6 +32,12 @@ outbox *client_outbox(const client *c);
  * why. */
 int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why);
 
+/* A piece of a message, or what else counts as one, has come. false: more than may. */
+bool client_counts(client *c, size_t size, double now);
+/* So many bytes have come over its connection in all: those of pings and of heads of frames, too. false: more than may,
+ * and it is to be closed. */
+bool client_heard(client *c, uint64_t bytes, double now);
+
 /* Called before and after each message to the client; and now and then: has it not read for too long? */
 void client_asked(client *c, double now);
 void client_written(client *c, double now);

@@ -155,8 +155,15 @@ static bool same_origin(struct lws *socket) {
     return strlen(origin) == (size_t)n && !strcasecmp(from, host);
 }
 
+bool guard_has_body(struct lws *socket) {
+    return lws_hdr_total_length(socket, WSI_TOKEN_HTTP_CONTENT_LENGTH) ||
+           lws_hdr_total_length(socket, WSI_TOKEN_HTTP_TRANSFER_ENCODING);
+}
+
 int guard_upgrade(const server *s, struct lws *socket) {
     char text[SERVE_TOKEN + 2];
+    if (guard_has_body(socket))
+        return HTTP_STATUS_BAD_REQUEST;
     if (lws_hdr_copy(socket, text, sizeof(text), WSI_TOKEN_GET_URI) <= 0 || strcmp(text, "/ws"))
         return HTTP_STATUS_NOT_FOUND;
     if (!guard_host(s, socket) || !same_origin(socket))

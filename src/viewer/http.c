@@ -78,6 +78,8 @@ int http_callback(struct lws *socket, enum lws_callback_reasons reason, void *us
         return next(socket, user);
     if (!lws_hdr_total_length(socket, WSI_TOKEN_GET_URI))
         return say(socket, HTTP_STATUS_METHOD_NOT_ALLOWED);
+    if (guard_has_body(socket)) /* which would be read as the next request */
+        return say(socket, HTTP_STATUS_BAD_REQUEST), -1;
     if (!guard_host(s, socket))
         return say(socket, HTTP_STATUS_FORBIDDEN);
     const page_file *file = find(in);

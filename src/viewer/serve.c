@@ -2,7 +2,9 @@
  * others wake it. */
 #include "viewer/serve.h"
 
+#include <linux/tcp.h>
 #include <malloc.h>
+#include <netinet/in.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LOOK_US 100000 /* how often it looks whether it is to end, and after clients */
+#define LARGE (1 << 20) /* bytes: buffers of pictures */
+#define LOOK_US 100000  /* how often it looks whether it is to end, and after clients */
 
 #define TEXT_OF(x) #x
 #define NUMBER(x) TEXT_OF(x)
@@ -53,7 +56,7 @@ static void collect(server *s) {
     }
 #ifdef __GLIBC__
     if (gone)
-        malloc_trim(0); /* their pictures were in arenas of threads that have ended */
+        malloc_trim(0); /* what they had was in arenas of threads that have ended */
 #endif
     (void)gone;
 }
@@ -70,6 +73,13 @@ static client *enter(server *s, struct lws *socket) {
     return s->clients[i];
 }
 
+/* Bytes that came over a connection. */
+static uint64_t heard(struct lws *socket) {
+    struct tcp_info info = { 0 };
+    socklen_t size = sizeof(info);
+    return getsockopt(lws_get_socket_fd(socket), IPPROTO_TCP, TCP_INFO, &info, &size) ? 0 : info.tcpi_bytes_received;
+}
+
 static void attend(server *s) {
     double now = serve_now();
     for (int i = 0; i < 2 * SERVE_CLIENTS; i++) {
@@ -77,7 +87,7 @@ static void attend(server *s) {
         struct lws *socket = c ? client_socket(c) : NULL;
         if (!socket)
             continue;
-        if (outbox_broken(client_outbox(c)) || client_stuck(c, now)) {
+        if (outbox_broken(client_outbox(c)) || client_stuck(c, now) || !client_heard(c, heard(socket), now)) {
             lws_set_timeout(socket, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
         } else if (outbox_pending(client_outbox(c))) {
             client_asked(c, now);
@@ -112,6 +122,9 @@ static int receive(struct lws *socket, client *c, const void *in, size_t size) {
     return -1;
 }
 
+/* One that was asked for or not: it counts as a message. */
+static int receive_pong(client *c, size_t size) { return client_counts(c, size, serve_now()) ? 0 : -1; }
+
 /* ---- what libwebsockets tells ---- */
 
 /* What it keeps for a connection. */
@@ -145,6 +158,7 @@ static int callback(struct lws *socket, enum lws_callback_reasons reason, void *
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return refuse_upgrade(s, socket, in);
     case LWS_CALLBACK_ESTABLISHED: return (c->client = enter(s, socket)) ? 0 : -1;
     case LWS_CALLBACK_RECEIVE: return c->client ? receive(socket, c->client, in, size) : -1;
+    case LWS_CALLBACK_RECEIVE_PONG: return c->client ? receive_pong(c->client, size) : -1;
     case LWS_CALLBACK_SERVER_WRITEABLE: return c->client ? send_next(socket, c->client) : -1;
     case LWS_CALLBACK_CLOSED:
         if (c->client) {
@@ -229,6 +243,9 @@ static void tell_link(const server *s) {
 }
 
 noc_status viewer_run(const viewer_source *source, const viewer_params *params, noc_log *log) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, LARGE); /* and it stays: what is large goes back when it is freed */
+#endif
     server *s = calloc(1, sizeof(*s));
     if (!s)
         return NOC_ERR_MEMORY;

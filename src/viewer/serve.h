@@ -37,6 +37,8 @@ bool guard_make_token(server *s);
 void guard_link(const server *s, char *link, size_t size);
 /* May who asks by these headers have anything? By Host, against names that are pointed at us (DNS rebinding). */
 bool guard_host(const server *s, struct lws *socket);
+/* Does more belong to its request than a head? */
+bool guard_has_body(struct lws *socket);
 /* May it have the WebSocket? 0, or a status of HTTP. */
 int guard_upgrade(const server *s, struct lws *socket);
 /* Are the texts equal? Takes as long wherever they differ. */
