@@ -75,6 +75,8 @@ void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2); /* one line on stderr, af
 int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3);
 int cli_read_on(const cli_command *command); /* where to read on alone, after an error that the library told */
 noc_log *cli_log_create(const cli_args *args);
+noc_log_level cli_log_level(const cli_args *args);
+void cli_log_message(void *user, noc_log_level level, const char *text); /* a line on stderr; user is not looked at */
 /* The program as it was called, for commands that are shown to be typed: a path where it is not on PATH. */
 void cli_called(const char *name);
 const char *cli_program(void);

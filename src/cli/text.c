@@ -61,7 +61,7 @@ int cli_usage(const cli_command *command, const char *fmt, ...) {
     return cli_read_on(command);
 }
 
-static void log_message(void *user, noc_log_level level, const char *text) {
+void cli_log_message(void *user, noc_log_level level, const char *text) {
     cli_progress_clear();
     fprintf(stderr, "nocturne: %s%s\n", level == NOC_LOG_WARN ? "warning: " : "", text);
 }
@@ -71,13 +71,12 @@ void cli_no_memory(void) {
     exit(CLI_FAILURE);
 }
 
+noc_log_level cli_log_level(const cli_args *args) {
+    return args->quiet ? NOC_LOG_ERROR : args->verbose ? NOC_LOG_DEBUG : NOC_LOG_WARN;
+}
+
 noc_log *cli_log_create(const cli_args *args) {
-    noc_log *log = noc_log_create(&(noc_log_params){
-        .level = args->quiet     ? NOC_LOG_ERROR
-                 : args->verbose ? NOC_LOG_DEBUG
-                                 : NOC_LOG_WARN,
-        .message = log_message,
-    });
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = cli_log_level(args), .message = cli_log_message });
     if (!log)
         cli_no_memory();
     return log;

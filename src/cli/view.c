@@ -3,10 +3,21 @@
 #include "viewer/viewer.h"
 
 #include <limits.h>
+#include <math.h>
 #include <spawn.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+/* What clients can make it say: so many lines at once and a minute. While the city is read there is no such limit. */
+#define LINES 20
+typedef struct view_lines {
+    atomic_bool loaded;
+    double left, since; /* lines; when they were counted, s */
+    bool told;          /* that more was left out */
+} view_lines;
 
 /* Arguments of render that view takes too, and its own. */
 typedef struct view_args {
@@ -14,6 +25,7 @@ typedef struct view_args {
     const char *address, *token;
     int port, clients;
     bool open;
+    view_lines *lines;
 } view_args;
 
 #define A view_args
@@ -116,6 +128,7 @@ static noc_status load(void *user, noc_scene *scene, const noc_progress *progres
     import->wet = false;
     noc_status status = cli_load_city(&args->render, scene, progress, report);
     import->wet = wet;
+    atomic_store(&args->lines->loaded, true);
     return status;
 }
 
@@ -145,6 +158,25 @@ static noc_status write_picture(void *user, const viewer_picture *p, const char 
     cli_drop_view(&job);
     noc_image_destroy(job.image);
     return status;
+}
+
+/* A message of the library's. By the log's lock one at a time. */
+static void tell(void *user, noc_log_level level, const char *text) {
+    view_lines *lines = user;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    double now = (double)t.tv_sec;
+    lines->left = fmin(LINES, lines->left + (now - lines->since) * LINES / 60);
+    lines->since = now;
+    if (atomic_load(&lines->loaded) && lines->left < 1) {
+        if (!lines->told)
+            cli_error("warning: more messages come than %d a minute: they are left out", LINES);
+        lines->told = true;
+        return;
+    }
+    lines->left -= atomic_load(&lines->loaded) ? 1 : 0;
+    lines->told = false;
+    cli_log_message(NULL, level, text);
 }
 
 static bool ended(void *user) {
@@ -218,7 +250,11 @@ static int run(void *arguments) {
         return status;
     cli_catch_signals();
     cli_progress_start(args->render.common.quiet);
-    noc_log *log = cli_log_create(&args->render.common);
+    view_lines lines = { .left = LINES };
+    noc_log *log = noc_log_create(&(noc_log_params){ cli_log_level(&args->render.common), tell, &lines });
+    if (!log)
+        cli_no_memory();
+    args->lines = &lines;
     status = noc_render_check(&args->render.render, log) ? CLI_FAILURE : view(args, log);
     noc_log_destroy(log);
     return status;

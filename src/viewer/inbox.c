@@ -26,9 +26,16 @@ void inbox_finish(inbox *in) {
     pthread_mutex_destroy(&in->mutex);
 }
 
-/* Under the lock: into the last one, where both are inputs with the same keys. */
-static bool merge(inbox *in, const wire_message *message) {
+/* Under the lock: into the last one, where both are inputs with the same keys. Of cameras the newest takes the place.
+ */
+static bool merge(inbox *in, wire_message *message) {
     wire_message *last = in->count ? in->waiting[in->count - 1] : NULL;
+    if (last && last->kind == WIRE_CAMERA && message->kind == WIRE_CAMERA) {
+        wire_message overtaken = *last;
+        *last = *message;
+        *message = overtaken;
+        return true;
+    }
     if (!last || last->kind != WIRE_INPUT || message->kind != WIRE_INPUT || last->input.keys != message->input.keys)
         return false;
     wire_input *to = &last->input;

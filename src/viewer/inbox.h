@@ -1,5 +1,5 @@
-/* inbox: messages of a client that its session has not done yet, in their order. Inputs of the same keys become one, so
- * that what is behind catches up at once. */
+/* inbox: messages of a client that its session has not done yet, in their order. Inputs of the same keys become one,
+ * and of cameras that follow each other the newest is left, so that what is behind catches up at once. */
 #ifndef NOC_VIEWER_INBOX_H
 #define NOC_VIEWER_INBOX_H
 

@@ -2,7 +2,11 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#define FARTHEST 1e6 /* m from the scene's origin: beyond that places are no city's, and floats too coarse */
+#define NEAREST 1e-3 /* m from eye to target */
 
 _Static_assert((int)WIRE_ORBIT == NOC_NAVIGATE_ORBIT && (int)WIRE_WALK == NOC_NAVIGATE_WALK,
                "modes are those of the library");
@@ -12,6 +16,10 @@ static noc_status cast(void *user, const noc_ray *rays, size_t count, noc_hit *h
     return noc_view_cast(((mover *)user)->view, rays, count, hits);
 }
 
+/* In the order of noc_viewpoint. */
+static const char *const found[] = { "street", "aerial", "overview", "own" };
+enum { FOUND = sizeof(found) / sizeof(*found) };
+
 static noc_status place(const mover *m, const noc_camera_params *params, double aspect, noc_camera *camera) {
     bool far;
     return noc_scene_place_camera(world_scene(m->world), params, aspect, camera, &far);
@@ -19,8 +27,10 @@ static noc_status place(const mover *m, const noc_camera_params *params, double 
 
 noc_status mover_init(mover *m, viewer_world *world, const viewer_source *source, double aspect) {
     *m = (mover){ .world = world, .source = source };
+    size_t cameras = noc_recipe_get_info(source->recipe)->camera_count + FOUND;
+    m->named = calloc(cameras, sizeof(*m->named));
     m->view = noc_view_create(world_device(world), world_scene(world));
-    m->navigator = m->view ? noc_navigator_create(world_scene(world), cast, m) : NULL;
+    m->navigator = m->view && m->named ? noc_navigator_create(world_scene(world), cast, m) : NULL;
     noc_status status = m->navigator ? place(m, &source->camera, aspect, &m->camera) : NOC_ERR_MEMORY;
     status = status ? status : noc_navigator_set_mode(m->navigator, NOC_NAVIGATE_FLY);
     return status ? status : noc_navigator_set_camera(m->navigator, &m->camera);
@@ -29,6 +39,7 @@ noc_status mover_init(mover *m, viewer_world *world, const viewer_source *source
 void mover_finish(mover *m) {
     noc_navigator_destroy(m->navigator);
     noc_view_destroy(m->view);
+    free(m->named);
     *m = (mover){ 0 };
 }
 
@@ -64,40 +75,58 @@ bool mover_advance(mover *m, double aspect, double now) {
     return true;
 }
 
-/* The camera of that name, of the recipe or found in the scene. */
-static bool find(const mover *m, const char *name, noc_camera_params *params) {
-    static const char *const found[] = { "street", "aerial", "overview", "own" };
+/* The camera of that name, of the recipe or found in the scene. It stays the same until the aspect is another one,
+ * whatever is set of the lights. */
+static bool find(mover *m, const char *name, double aspect, noc_camera *camera) {
     const noc_recipe_info *recipe = noc_recipe_get_info(m->source->recipe);
-    for (size_t i = 0; i < recipe->camera_count; i++)
-        if (!strcmp(name, recipe->cameras[i].name)) {
-            *params = recipe->cameras[i].params;
-            return true;
-        }
-    for (size_t i = 0; i < sizeof(found) / sizeof(*found); i++)
-        if (!strcmp(name, found[i])) {
-            *params = noc_camera_default_params();
-            params->viewpoint = (noc_viewpoint)i;
-            return true;
-        }
-    return false;
+    noc_camera_params params = noc_camera_default_params();
+    size_t at = 0;
+    while (at < recipe->camera_count && strcmp(name, recipe->cameras[at].name))
+        at++;
+    if (at < recipe->camera_count)
+        params = recipe->cameras[at].params;
+    for (size_t i = 0; i < FOUND && at == recipe->camera_count + i; i++) {
+        at += strcmp(name, found[i]) != 0;
+        params.viewpoint = (noc_viewpoint)i;
+    }
+    if (at == recipe->camera_count + FOUND)
+        return false;
+    mover_named *named = &m->named[at];
+    if (named->aspect != aspect) {
+        named->aspect = aspect;
+        named->there = !place(m, &params, aspect, &named->camera);
+    }
+    *camera = named->camera;
+    return named->there;
+}
+
+static bool can_be(const noc_camera *c) {
+    double along = 0;
+    for (int k = 0; k < 3; k++) {
+        along = hypot(along, c->target[k] - c->eye[k]);
+        if (!(fabs(c->eye[k]) <= FARTHEST && fabs(c->target[k]) <= FARTHEST))
+            return false;
+    }
+    return along >= NEAREST;
 }
 
 bool mover_go(mover *m, const wire_camera *to, double aspect, double now, char *why, size_t size) {
-    noc_camera_params params;
     noc_camera camera = noc_camera_default();
     m->stepped = now;
     if (!to->name) { /* whose links and paths say where, are there at once */
         memcpy(camera.eye, to->eye, sizeof(camera.eye));
         memcpy(camera.target, to->target, sizeof(camera.target));
         camera.fov_deg = to->fov;
+        snprintf(why, size, "the camera looks nowhere, or is more than 1000 km away");
+        if (!can_be(&camera))
+            return false;
         *m->name = 0;
-        snprintf(why, size, "the camera looks nowhere");
         bool there = !noc_navigator_set_camera(m->navigator, &camera);
         noc_navigator_camera(m->navigator, &m->camera);
         return there;
     }
     snprintf(why, size, "there is no such camera");
-    if (!find(m, to->name, &params) || place(m, &params, aspect, &camera))
+    if (!find(m, to->name, aspect, &camera))
         return false;
     snprintf(m->name, sizeof(m->name), "%s", to->name);
     return !noc_navigator_go(m->navigator, &camera);

@@ -6,14 +6,22 @@
 #include "viewer/wire.h"
 #include "viewer/world.h"
 
+/* A camera by its name, as it was found; aspect 0: it was not asked for yet. */
+typedef struct mover_named {
+    noc_camera camera;
+    double aspect;
+    bool there;
+} mover_named;
+
 typedef struct mover {
     viewer_world *world;
     const viewer_source *source;
     noc_view *view; /* for rays: what is walked on, and into */
     noc_navigator *navigator;
     noc_camera camera;
-    double stepped; /* when it was moved last, s */
-    char name[64];  /* of the camera that it stands at; "" once it has moved */
+    mover_named *named; /* the recipe's, then those that are found in the scene: to find one takes some 40 ms */
+    double stepped;     /* when it was moved last, s */
+    char name[64];      /* of the camera that it stands at; "" once it has moved */
 } mover;
 
 /* Of a scene that is there; it stands where the source says. */

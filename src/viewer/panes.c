@@ -19,11 +19,15 @@ noc_status panes_init(panes *p, viewer_world *world, outbox *box, noc_log *log, 
     return p->encoder ? panes_set_layout(p, WIRE_SINGLE) : NOC_ERR_MEMORY;
 }
 
-static void drop(pane *of) {
+static void drop_smoother(pane *of) {
     noc_smoother_destroy(of->smoother);
-    noc_view_destroy(of->view);
     of->smoother = NULL;
     of->calm = NULL;
+}
+
+static void drop(pane *of) {
+    drop_smoother(of);
+    noc_view_destroy(of->view);
     of->view = NULL;
 }
 
@@ -333,6 +337,8 @@ noc_status panes_publish(panes *p, int which, const panes_picture *what) {
     status = status ? status : encode(p, &head, what->moves, &message, &size);
     if (status)
         return status;
+    if (what->lossless) /* it rests for a while: a third or more of its memory is not needed */
+        drop_smoother(of);
     of->number++;
     outbox_picture(p->box, which, of->number, message, size, stats_of(p, which, what, &head));
     return NOC_OK;

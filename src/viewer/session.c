@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+#define MOST_DOING 0.1 /* s of messages before the next picture */
+
 double session_now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -26,10 +28,13 @@ static bool wait_for_world(session *s) {
 
 /* Those of a client that has left, and of a program that ends, are not done any more. */
 static void do_all(session *s) {
-    for (wire_message *message; !inbox_ended(&s->in) && (message = inbox_get(&s->in));) {
+    double start = session_now();
+    s->behind = false;
+    for (wire_message *message; !inbox_ended(&s->in) && !s->behind && (message = inbox_get(&s->in));) {
         session_do(s, message);
         wire_free(message);
         free(message);
+        s->behind = session_now() - start > MOST_DOING;
     }
 }
 

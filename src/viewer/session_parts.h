@@ -35,6 +35,7 @@ struct session {
     uint32_t notes;
     bool began;     /* a first picture was made */
     bool travels;   /* its camera is on its way, though the hand rests */
+    bool behind;    /* messages took so long that a picture comes first, whatever else waits */
     bool told_less; /* something was set that the client has not been told */
     asker *asker;   /* NULL until it is asked */
 };

@@ -12,7 +12,7 @@
 static bool goes_on(void *user, const char *what, double done) {
     (void)what, (void)done;
     session *s = user;
-    return !inbox_hurries(&s->in);
+    return !inbox_ended(&s->in) && (s->behind || !inbox_hurries(&s->in));
 }
 
 /* A frame that shows an input which was in none before it comes to its end, so that there are pictures however fast
@@ -20,7 +20,7 @@ static bool goes_on(void *user, const char *what, double done) {
 static bool goes_on_moving(void *user, const char *what, double done) {
     (void)what, (void)done;
     session *s = user;
-    return !inbox_ended(&s->in) && (s->input != s->shown || !inbox_hurries(&s->in));
+    return !inbox_ended(&s->in) && (s->behind || s->input != s->shown || !inbox_hurries(&s->in));
 }
 
 static void full_size(const session *s, int *w, int *h) {
@@ -112,7 +112,7 @@ static double step_moving(session *s) {
 /* Has the pane what it is to have at rest? */
 static bool is_done(const session *s, int which) {
     const pane *p = &s->panes.pane[which];
-    return p->look.frames && p->stats.frames >= (uint64_t)p->look.frames;
+    return p->look.frames && !p->calm && p->stats.frames >= (uint64_t)p->look.frames;
 }
 
 /* The first pictures at rest are finer and finer, and the whole ones become more and more exact. */
@@ -141,7 +141,17 @@ static double step_resting(session *s) {
     return any ? 0 : IDLE;
 }
 
+/* Does anybody look at its pictures? */
+static bool is_watched(session *s) {
+    bool watched = false;
+    for (int i = 0; i < s->panes.count && s->width && !inbox_hidden(&s->in); i++)
+        watched = watched || panes_watched(&s->panes, i, session_now());
+    return watched;
+}
+
 double session_step(session *s) {
+    if (is_watched(s))
+        world_look(s->setup->world);
     uint64_t version = world_version(s->setup->world);
     if (version != s->version) {
         s->version = version;

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #define STEP (1. / 30) /* s between two moves of the cars, at least */
+#define UNSEEN 1.0     /* s: cars stand when nobody has looked for so long */
 
 static double now_seconds(void) {
     struct timespec t;
@@ -43,7 +44,7 @@ static void wait_until(viewer_world *w, double end) {
 /* Moves the clock of the cars on; seconds until it is to be done again. */
 static double drive(viewer_world *w, double *last) {
     double now = now_seconds(), passed = now - *last;
-    if (!world_drives(w)) {
+    if (!world_drives(w) || now - w->looked > UNSEEN) {
         *last = now;
         return -1;
     }
@@ -167,6 +168,15 @@ const char *world_failed(viewer_world *w) {
 noc_scene *world_scene(viewer_world *w) { return is_loaded(w) ? w->scene : NULL; }
 noc_device *world_device(viewer_world *w) { return is_loaded(w) ? w->device : NULL; }
 const noc_report *world_report(viewer_world *w) { return is_loaded(w) ? w->report : NULL; }
+
+void world_look(viewer_world *w) {
+    double now = now_seconds();
+    pthread_mutex_lock(&w->mutex);
+    if (now - w->looked > UNSEEN)
+        pthread_cond_broadcast(&w->changed);
+    w->looked = now;
+    pthread_mutex_unlock(&w->mutex);
+}
 
 void world_settle(viewer_world *w) {
     pthread_mutex_lock(&w->mutex);

@@ -31,6 +31,8 @@ json_t *world_schema(viewer_world *world);
 json_t *world_state(viewer_world *world);
 /* Sets an option, which the next frame shows. false, with why: nothing has changed. */
 bool world_set(viewer_world *world, const char *name, const char *value, char *why, size_t size);
+/* Somebody looks now: cars drive while that was said within the last second. */
+void world_look(viewer_world *world);
 /* Waits until all that was set is in the scene. */
 void world_settle(viewer_world *world);
 

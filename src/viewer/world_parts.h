@@ -57,7 +57,8 @@ struct viewer_world {
     noc_material *materials; /* of the scene, as inputs have them */
     bool *named;             /* of each: a recipe says by its name what it is */
     unsigned dirty;
-    bool busy; /* the thread publishes */
+    bool busy;     /* the thread publishes */
+    double looked; /* when somebody did, s */
     uint64_t version, told;
 };
 

@@ -6,12 +6,16 @@ import random
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 
 import tap
 from wire import TOKEN, Client, Closed, Picture, Program
 
 SCENE = "builtin:single"
+TRACK = """<?xml version='1.0'?><gpx version='1.1' xmlns='http://www.topografix.com/GPX/1/1'><trk><name>a</name><trkseg>
+<trkpt lat='48.754461' lon='11.421681'><time>2026-11-22T22:00:00Z</time></trkpt>
+<trkpt lat='48.754450' lon='11.422224'><time>2026-11-22T22:00:10Z</time></trkpt></trkseg></trk></gpx>"""
 
 
 def check_alive(p):
@@ -241,6 +245,79 @@ def test_a_frame_of_16_exabytes(p):
     check_alive(p)
 
 
+def test_pings_and_pongs_are_counted(p):
+    for payload in b"", b"a" * 100:
+        for opcode in 9, 10:
+            c, code = Client(p), "open"
+            end = time.monotonic() + 15
+            try:
+                c.socket.settimeout(0.5)
+                frames = (bytes([0x80 | opcode, 0x80 | len(payload)]) + b"\0\0\0\0" + payload) * 1000
+                while time.monotonic() < end:
+                    try:
+                        c.socket.sendall(frames)
+                    except TimeoutError:
+                        pass
+            except OSError:
+                code = None
+            c.close()
+            assert code != "open", (opcode, len(payload))
+            wait_free(p)
+    c = Client(p) # a browser's are taken
+    c.say("hello", width=64, height=36)
+    for _ in range(100):
+        c.frame(b"x", opcode=9)
+        c.frame(b"x", opcode=10)
+    c.picture()
+    c.close()
+    check_alive(p)
+
+
+def test_a_body_is_no_request(p):
+    inner = b"GET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    for head in b"Content-Length: %d" % len(inner), b"Transfer-Encoding: chunked":
+        with p.raw() as s:
+            s.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n" + head + b"\r\n\r\n" + inner)
+            s.settimeout(15)
+            data = b""
+            try:
+                data = b"".join(iter(lambda s=s: s.recv(65536), b""))
+            except ConnectionError: # it closes on what it does not read
+                pass
+        assert data.count(b"HTTP/1.1 ") <= 1 and b" 200 " not in data[:20], data[:300]
+    assert Client(p, headers=["Content-Length: 5"]).status != 101
+    check_alive(p)
+
+
+def test_frames_without_a_mask_harm_nobody(p):
+    """libwebsockets takes them: masks are for proxies in between."""
+    c = Client(p)
+    c.socket.sendall(b"\x81\x05hello" + b"\x81\x7e\xff\xff" + b"{" * 65535)
+    assert c.closed() != "open"
+    c.close()
+    check_alive(p)
+
+
+def test_the_terminal_stays_quiet(p):
+    """What cameras cannot be is told to that client alone."""
+    q = Program(SCENE)
+    c = Client(q)
+    c.say("hello", width=64, height=36)
+    c.text_of("welcome")
+    for eye, target in (([0, 0, 1], [0, 0, 1 + 1e-10]), ([1e7, 0, 1], [0, 0, 1]), ([0, 0, 1], [0, -1e7, 1]),
+                        ([5e6, 0, 1], [5e6, 1, 1])):
+        for _ in range(30):
+            c.say("camera", eye=eye, target=target, fov=50)
+        note = c.wait_for(lambda m: isinstance(m, dict) and m["t"] == "note")
+        assert note["level"] == "error" and "looks nowhere" in note["text"], note
+    for i in range(300):
+        c.say("navigate", mode=("walk", "fly")[i % 2])
+    c.say("camera", eye=[0, 0, 1], target=[1, 0, 1], fov=50, n=7)
+    c.wait_for(lambda m: isinstance(m, Picture) and m.input == 7)
+    status, said = q.end()
+    assert status == 130 and len(said.splitlines()) <= 25 and "looks" not in said and "camera" not in said, said[:2000]
+
+
 def test_rates_are_held(p):
     def flood(count, make):
         c = Client(p)
@@ -328,6 +405,40 @@ def test_nothing_is_rendered_for_nobody(p):
     assert share < 0.1, "not acknowledged: %.2f" % share
     c.close()
     wait_free(p)
+
+
+def test_cars_wait_for_who_looks(p):
+    """Each of their moves is an edit of the scene."""
+    with tempfile.NamedTemporaryFile("w", suffix=".gpx") as file:
+        file.write(TRACK)
+        file.flush()
+        q = Program(os.path.join(os.environ["NOC_SOURCE"], "tests/cli/city.gml"), file.name, "--threads", "2")
+        c = Client(q)
+        c.say("hello", width=64, height=36)
+        assert c.text_of("welcome")["scene"]["cars"] == 1
+    try:
+        c.say("world", name="traffic-drive", value="on")
+        for _ in range(5):
+            c.picture()
+
+        def used(seconds=2):
+            before = q.cpu()
+            time.sleep(seconds)
+            return (q.cpu() - before) / seconds
+
+        c.say("watch", on=False)
+        time.sleep(2)
+        share = used()
+        assert share < 0.03, "hidden: %.3f" % share
+        c.say("watch", on=True)
+        for _ in range(5):
+            c.picture()
+        c.close()
+        time.sleep(2)
+        share = used()
+        assert share < 0.03, "gone: %.3f" % share
+    finally:
+        q.end()
 
 
 def main():

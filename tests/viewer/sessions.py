@@ -139,6 +139,23 @@ def test_what_cannot_be_set_is_told(p):
     c.close()
 
 
+def test_cameras_by_name_do_not_starve(p):
+    """They come as fast as they may, among other things; pictures go on, and the newest is what is seen."""
+    c = enter(p)
+    seen, n, start = 0, 0, time.monotonic()
+    while time.monotonic() - start < 4:
+        n += 1
+        c.say("camera", name=("street", "overview", "aerial")[n % 3], n=n)
+        c.say("navigate", mode="fly")
+        try:
+            seen += isinstance(c.wait_for(lambda m: isinstance(m, Picture), timeout=0.01), Picture)
+        except socket.timeout:
+            pass
+    assert seen > 8, seen
+    c.wait_for(lambda m: isinstance(m, Picture) and m.input == n, timeout=20)
+    c.close()
+
+
 def test_each_client_has_its_own_camera(p):
     a, b = enter(p), enter(p)
     a.say("camera", eye=[1, 2, 30], target=[4, 5, 6], fov=40, n=1)

@@ -173,6 +173,28 @@ static void test_inputs_become_one(void **state) {
     inbox_finish(&in);
 }
 
+static void test_the_newest_camera_counts(void **state) {
+    (void)state;
+    inbox in;
+    inbox_init(&in);
+    for (int i = 1; i <= 3000; i++) {
+        char text[96];
+        snprintf(text, sizeof(text), "{\"t\":\"camera\",\"name\":\"c%d\",\"n\":%d}", i, i);
+        assert_true(put(&in, text));
+    }
+    assert_true(put(&in, "{\"t\":\"layout\",\"name\":\"divider\"}"));
+    assert_true(put(&in, "{\"t\":\"camera\",\"name\":\"last\"}"));
+    wire_message *first = inbox_get(&in);
+    assert_string_equal(first->camera.to.name, "c3000");
+    assert_int_equal(first->camera.n, 3000);
+    wire_free(first);
+    free(first);
+    assert_int_equal(get(&in).kind, WIRE_LAYOUT);
+    assert_int_equal(get(&in).kind, WIRE_CAMERA);
+    assert_null(inbox_get(&in));
+    inbox_finish(&in);
+}
+
 static void test_inbox_is_bounded(void **state) {
     (void)state;
     inbox in;
@@ -241,6 +263,7 @@ int main(void) {
         cmocka_unit_test(test_camera),
         cmocka_unit_test(test_questions),
         cmocka_unit_test(test_inputs_become_one),
+        cmocka_unit_test(test_the_newest_camera_counts),
         cmocka_unit_test(test_inbox_is_bounded),
         cmocka_unit_test(test_inbox_wakes),
         cmocka_unit_test(test_heads),

@@ -138,8 +138,12 @@ static void traffic_goes_and_drives(void **state) {
     set_world(&c, "traffic-pace", "20");
     set_world(&c, "traffic-drive", "on");
     uint64_t told = world_told(c.world), version = world_version(c.world);
-    for (int i = 0; i < 400 && world_version(c.world) < version + 3; i++)
+    nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL);
+    assert_true(world_version(c.world) == version); /* nobody looks */
+    for (int i = 0; i < 400 && world_version(c.world) < version + 3; i++) {
+        world_look(c.world);
         nanosleep(&(struct timespec){ .tv_nsec = 10000000 }, NULL);
+    }
     assert_true(world_version(c.world) >= version + 3);
     assert_true(world_told(c.world) == told); /* that they drive is no news */
     set_world(&c, "traffic-drive", "off");
@@ -249,6 +253,7 @@ static void edits_come_while_frames_are_rendered(void **state) {
         assert_int_equal(pthread_create(&threads[i], NULL, look_at, &lookers[i]), 0);
     for (int round = 0; round < 6; round++)
         for (size_t i = 0; i < EDITS; i++) {
+            world_look(c.world);
             set_world(&c, edits[i].name, round % 2 && *edits[i].back ? edits[i].back : edits[i].value);
             json_decref(world_state(c.world));
             nanosleep(&(struct timespec){ .tv_nsec = 2000000 }, NULL);
