@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""bench_viewer.py PROGRAM [--inputs N] [--size WxH] [--long N] [--crowd N] [INPUT...]: what a client of `nocturne view`
-gets: seconds from an input to the picture that shows it, pictures a second and their resolution while it moves, the way
-to rest, bandwidth and memory. --long does N inputs, edits and new connections and tells whether memory grows.
+"""bench_viewer.py PROGRAM [--inputs N] [--size WxH] [--long SECONDS] [--crowd N] [INPUT...]: what a client of
+`nocturne view` gets: seconds from an input to the picture that shows it, pictures a second and their resolution while
+it moves, the way to rest, and bandwidth. --crowd tells the memory without clients, with 1 and with N, --long whether
+memory grows while inputs, edits and new connections go on for so long.
 
 The hand is one that goes on: each input is sent when the picture of the one before it has come (latency), then 60 a
 second whatever comes back (as a page does). Shares of a frame's own time, which the program tells with each picture,
@@ -87,65 +88,88 @@ def stream(client, seconds):
 
 
 def rest(client, seconds, width, height):
-    """How long until the whole picture is there, and how fast it becomes exact."""
-    start, before, first, last, count = time.monotonic(), client.bytes, None, None, 0
+    """How long until the whole picture is there, and the first without loss, and how fast it becomes exact."""
+    start, before, whole, lossless, last, count = time.monotonic(), client.bytes, None, None, None, 0
     while time.monotonic() - start < seconds:
         try:
             m = client.picture(timeout=max(0.001, start + seconds - time.monotonic()))
         except OSError:
             break
-        if not m.moving and (m.width, m.height) == (width, height):
-            first = first or m.time - start
-            last, count = m, count + 1
+        if m.moving or (m.width, m.height) != (width, height):
+            continue
+        whole = whole or m.time - start
+        lossless = lossless or (m.codec == 1 and m.time - start)
+        last, count = m, count + 1
     if last:
-        print("  at rest       whole after %.2f s; after %.0f s %d frames (%.2f a second), %d pictures, error %.1f %%, "
-              "%.2f Mbit/s"
-              % (first, seconds, last.frames, last.frames / seconds, count, 100 * last.error,
+        print("  at rest       whole after %.2f s, without loss %s; after %.0f s %d frames (%.2f a second), "
+              "%d pictures (%.2f a second), error %.1f %%, %.2f Mbit/s"
+              % (whole, "after %.2f s" % lossless if lossless else "not yet", seconds, last.frames,
+                 last.frames / seconds, count, count / seconds, 100 * last.error,
                  8e-6 * (client.bytes - before) / seconds))
 
 
-def crowd(program, count, width, height):
-    before = program.memory()
-    most = []
+def settle(program):
+    """Until the city is there, and all clients have left: bytes then."""
+    Client(program).text_of("welcome", timeout=3600)
+    threads, same = program.threads(), 0
+    while same < 10: # sessions end when their frame does
+        time.sleep(0.2)
+        now = program.threads()
+        threads, same = now, same + 1 if now == threads else 0
+    return program.memory()
 
-    def look(): # each reads for itself: who does not is dropped
+
+def crowd(program, count, width, height):
+    before = settle(program)
+    most, resting = [], []
+
+    def look(barrier): # each reads for itself: who does not is dropped
         c = begin(program, width, height)
         for _ in range(10):
             n = move(c, turn=[0.01, 0], seconds=0.05)
             c.wait_for(lambda m: is_picture(m) and m.input >= n, timeout=300)
+            most.append(program.memory())
         c.wait_for(lambda m: is_picture(m) and (m.width, m.height) == (width, height), timeout=600)
-        most.append(program.memory()) # the whole picture of each is where most memory is
-        while len(most) < wanted:
+        most.append(program.memory())
+        c.wait_for(lambda m: is_picture(m) and m.codec == 1, timeout=600)
+        arrived.append(1)
+        while len(arrived) < barrier:
             try:
                 c.picture(timeout=1)
             except OSError:
                 pass
+        resting.append(program.memory())
+        gone.append(1)
+        while len(gone) < barrier: # none is less while others look
+            try:
+                c.picture(timeout=0.1)
+            except OSError:
+                pass
         c.close()
 
-    def meet(number):
-        threads = [threading.Thread(target=look) for _ in range(number)]
+    told = []
+    for number in 1, count:
+        most, resting, arrived, gone = [], [], [], []
+        threads = [threading.Thread(target=look, args=(number,)) for _ in range(number)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        return max(most)
-
-    wanted = 1
-    one = meet(1)
-    most.clear()
-    wanted = count
-    many = meet(count)
-    time.sleep(2)
-    print("  memory        without clients %.0f MB, with 1 %.0f MB, with %d %.0f MB"
-          % (1e-6 * before, 1e-6 * one, count, 1e-6 * many))
-    print("                after they have left %.0f MB" % (1e-6 * program.memory()))
+        told.append((max(most), max(resting), settle(program)))
+    print("  memory        without clients %.0f MB" % (1e-6 * before))
+    for number, (peak, still, after) in zip((1, count), told):
+        print("                with %d at most %.0f MB, %.0f MB at rest, %.0f MB after they have left"
+              % (number, 1e-6 * peak, 1e-6 * still, 1e-6 * after))
 
 
-def long(program, inputs, width, height):
-    """Inputs at full rate, edits, layouts, questions and new connections."""
-    client, told = begin(program, width, height), []
-    start = time.monotonic()
-    for i in range(inputs):
+def long(program, seconds, width, height):
+    """Inputs as they are shown, edits, layouts, questions and new connections; memory at the start, each ten minutes,
+    and at the end, with the client and after it."""
+    empty, i = settle(program), 0
+    client, start = begin(program, width, height), time.monotonic()
+    told, most, next_at = [(0, program.memory())], 0, 600
+    while time.monotonic() - start < seconds:
+        i += 1
         move(client, turn=[0.01, 0], seconds=0.05, keys=["forward" if i % 40 < 20 else "back"])
         client.wait_for(lambda m, n=client.n: is_picture(m) and m.input >= n, timeout=300)
         if i % 20 == 10:
@@ -159,11 +183,16 @@ def long(program, inputs, width, height):
         if i % 250 == 249:
             client.close()
             client = begin(program, width, height)
-        if i % (inputs // 10) == inputs // 10 - 1:
-            told.append(1e-6 * program.memory())
+        most = max(most, program.memory())
+        if time.monotonic() - start > next_at:
+            told.append((next_at / 60, program.memory()))
+            print("  %.0f min: %.0f MB" % (next_at / 60, 1e-6 * program.memory()), flush=True)
+            next_at += 600
+    told.append(((time.monotonic() - start) / 60, program.memory()))
     client.close()
-    print("  %d inputs in %.0f s: memory at each tenth of them %s MB"
-          % (inputs, time.monotonic() - start, ", ".join("%.0f" % x for x in told)))
+    print("  %d inputs: memory without clients %.0f MB, %s, at most %.0f MB, after the client has left %.0f MB"
+          % (i, 1e-6 * empty, ", ".join("after %.0f min %.0f MB" % (t, 1e-6 * b) for t, b in told), 1e-6 * most,
+             1e-6 * settle(program)))
 
 
 def main():
@@ -173,7 +202,7 @@ def main():
     parser.add_argument("--inputs", type=int, default=60)
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--size", default="1280x720")
-    parser.add_argument("--long", type=int, default=0)
+    parser.add_argument("--long", type=float, default=0)
     parser.add_argument("--crowd", type=int, default=0)
     parser.add_argument("--threads", default="2")
     args = parser.parse_args()

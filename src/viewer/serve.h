@@ -17,14 +17,14 @@ typedef struct server {
     struct lws_context *context;
     struct lws_vhost *host;
     int listener, port;
-    bool loopback; /* the address is reached from this machine alone */
+    bool loopback;      /* the address is reached from this machine alone */
+    bool ended, failed; /* it ends; the world could not be loaded */
     char token[SERVE_TOKEN + 1];
     char host_name[256];                /* of this machine */
     client *clients[2 * SERVE_CLIENTS]; /* those that have left are joined when they have ended; NULL where free */
     int connected, held;                /* clients; and with those that have left */
     lws_sorted_usec_list_t timer;
-    atomic_bool lit;    /* session_setup.lit */
-    bool ended, failed; /* the world could not be loaded */
+    atomic_bool lit; /* session_setup.lit; other threads write it, so it is apart from what this one reads */
 } server;
 
 double serve_now(void); /* s */

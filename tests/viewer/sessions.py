@@ -28,6 +28,19 @@ def said(c, t, wanted=lambda m: True, timeout=180):
     return c.wait_for(lambda m: isinstance(m, dict) and m["t"] == t and wanted(m), timeout)
 
 
+def all_see(clients, timeout=180):
+    """Each of them gets a message for which its wanted(message) holds; all read meanwhile: who does not is dropped."""
+    waiting, deadline = list(clients), time.monotonic() + timeout
+    while waiting:
+        assert time.monotonic() < deadline, "%d of %d do not see it" % (len(waiting), len(clients))
+        for c, wanted in clients.items():
+            try:
+                c.wait_for(wanted if c in waiting else lambda m: False, timeout=0.1)
+                waiting.remove(c)
+            except socket.timeout:
+                pass
+
+
 def near(a, b, within=1e-3):
     return all(abs(x - y) < within for x, y in zip(a, b))
 
@@ -174,12 +187,25 @@ def test_edits_are_shared(p):
     a, b = enter(p), enter(p)
     a.say("set", name="frames", value="12")
     b.say("set", name="frames", value="12")
-    for c in a, b: # both rest
-        c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 12)
+    def rests(m):
+        return isinstance(m, Picture) and m.codec == 1 and m.frames >= 12
+
+    all_see({a: rests, b: rests})
     a.say("world", name="group.lamps", value="0.5,2200K")
-    for c in a, b:
-        said(c, "state", lambda m: m["world"]["values"]["group.lamps"] == "0.5,2200K")
-        c.wait_for(lambda m: isinstance(m, Picture) and m.frames < 12) # it began anew
+
+    def begins_anew():
+        told = []
+
+        def wanted(m):
+            if isinstance(m, dict):
+                told.extend(["0.5,2200K"] if m["t"] == "state" and
+                            m["world"]["values"]["group.lamps"] == "0.5,2200K" else [])
+                return False
+            return told and m.frames < 12
+
+        return wanted
+
+    all_see({a: begins_anew(), b: begins_anew()})
     c = enter(p)
     assert c.welcome["state"]["world"]["values"]["group.lamps"] == "0.5,2200K"
     a.say("world", name="group.lamps", value="on,own")
