@@ -60,7 +60,7 @@ asan: deps-check
 # The pool, the log, frames, the tables that they share, and what loads a scene.
 THREADED = base-test_base base-test_api backend-test_lists backend-test_many light-test_learned render-test_light_stats \
 	render-test_shadow render-test_renderer render-test_worlds render-test_views render-test_memory render-test_golden \
-	import-test_load import-test_at_once
+	import-test_load import-test_at_once viewer-test_world
 tsan: deps-check
 	@[ -e build-tsan/build.ninja ] || meson setup build-tsan -Db_sanitize=thread -Dbuildtype=debugoptimized -Dbench=false -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-tsan
