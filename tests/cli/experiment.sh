@@ -12,7 +12,8 @@ cat >spec.json <<'SPEC'
 }
 SPEC
 
-# rows FOLDER [FRAMES]: the table without times, sorted; fails where a row has not as many fields as the header
+# rows FOLDER [FRAMES]: the table without times and memory (Embree's blocks are of the threads that build), sorted; fails
+# where a row has not as many fields as the header
 rows() {
     python3 -c '
 import csv, sys
@@ -20,7 +21,7 @@ table = list(csv.reader(open(sys.argv[1] + "/results.csv")))
 assert all(len(row) == len(table[0]) for row in table)
 drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s",
                                                          "light_build_s",
-        "light_volumes_s", "light_tuning_s", "light_hierarchy_s", "light_boxes_s")]
+        "light_volumes_s", "light_tuning_s", "light_hierarchy_s", "light_boxes_s", "memory_bytes", "scene_bytes")]
 frame = table[0].index("frame")
 last = int(sys.argv[2]) if len(sys.argv) > 2 else 1 << 30
 for row in [table[0]] + sorted(r for r in table[1:] if int(r[frame]) <= last):
