@@ -40,7 +40,7 @@ demo: build
 	@echo
 	@echo "Try next"
 	@echo "  build/nocturne render builtin:city --view aerial --size 1920x1080 -o aerial.png"
-	@echo "  build/nocturne render builtin:city --city-seed 7 --city-lit 0.6 -o other.png"
+	@echo "  build/nocturne render builtin:city --city-seed 7 --window-lit 0.6 -o other.png"
 	@echo "  build/nocturne render CITY.gml LAMPS.geojson -o city.png    (where to get them: docs/formats.md)"
 	@echo "  build/nocturne help render"
 

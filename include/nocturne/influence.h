@@ -19,7 +19,7 @@ extern "C" {
 typedef enum noc_emitter_kind {
     NOC_EMITTER_LAMP,    /* of inputs, or placed by a rule: its lights follow one another, share its id, and lie within
                             5 m of the first one */
-    NOC_EMITTER_WINDOW,  /* one pane */
+    NOC_EMITTER_WINDOW,  /* one pane, with all its triangles */
     NOC_EMITTER_VEHICLE, /* lights of one instance that share a name: a car's headlamps */
     NOC_EMITTER_SURFACE, /* a mesh that shines, with all its triangles; lone flat lights */
     NOC_EMITTER_OTHER,   /* lights that move by themselves */

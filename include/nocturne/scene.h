@@ -316,9 +316,9 @@ NOC_DEFAULT_PARAMS(noc_window_params, noc_window_default_params, NOC_WINDOW_DEFA
 /* Share of the windows of that kind that are lit where lit_windows of all are at 21 h: lit_windows times what the
  * kind's curve has at that hour over 21 h, at most 1. */
 NOC_API double noc_window_share(noc_window_kind kind, double lit_windows, double hour);
-/* Switches the windows that a load has made, by lit_windows, hour and seed; the rest of params is not read. They are as
- * a load with these would have made them. It costs what
- * switching their lights does: nothing is built anew. */
+/* Switches the windows that a load or noc_scene_add_city has made, by lit_windows, hour and seed; the rest of params is
+ * not read. They are as a load with these would have made them. It costs what switching their lights does: nothing is
+ * built anew. */
 NOC_API noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params);
 
 /* Cars of a load (noc_import_params.traffic) where they are at that time, s: of any sign, 0 is where a load puts them
@@ -517,15 +517,15 @@ NOC_API noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *came
  * inside, anything else as by overview. aspect = width / height of the picture. */
 NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera);
 
-/* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the
+/* The built-in procedural night city. The same seed and size give the same city on every machine, with its windows lit
+ * as noc_window_default_params() has it until noc_scene_set_windows, or a load, says otherwise. NULL params are the
  * defaults. */
 typedef struct noc_city_params {
     uint32_t seed;
-    double size;        /* edge of the square it covers, metres, 150..5000 */
-    double lit_windows; /* share of windows that are lit, 0..1 */
+    double size; /* edge of the square it covers, metres, 150..5000 */
 } noc_city_params;
 
-#define NOC_CITY_DEFAULTS(set) set(seed, 1) set(size, 420) set(lit_windows, 0.35)
+#define NOC_CITY_DEFAULTS(set) set(seed, 1) set(size, 420)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_city_params, noc_city_default_params, NOC_CITY_DEFAULTS)
 #else

@@ -9,6 +9,9 @@
  * points are the arena's. false: there is none of that number, or (arena->refused) memory was refused. */
 bool city_builtin_street(const noc_city_params *params, size_t i, noc_arena *arena, geo_road *street);
 
+/* noc_scene_add_builtin. windows: those that the scene has are switched; false: they are dark glass. */
+noc_status city_add_builtin(noc_scene *scene, const char *name, const noc_builtin_params *params, bool windows);
+
 /* Distributions that a scene's lamps have. file: the user's own for all lamps, NULL: built-in ones. NULL after an
  * error, which *status gets. */
 typedef struct city_profiles city_profiles;

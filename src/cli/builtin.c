@@ -50,10 +50,11 @@ void cli_print_windows(const char *heading, const noc_window_counts *c) {
     const char *before = "; walls without: ";
     for (int v = 0; v < NOC_WALL_VERDICT_COUNT; v++)
         area += c->area[v];
-    if (!(area > 0))
+    if (!(area > 0) && !c->windows)
         return;
-    printf("%s%s, %s lit, %.1f on 100 m2 of wall, %.1f lit", heading, noc_text_many(a, c->windows, "window"),
-           noc_text_count(b, c->lit), 100 * (double)c->windows / area, 100 * (double)c->lit / area);
+    printf("%s%s, %s lit", heading, noc_text_many(a, c->windows, "window"), noc_text_count(b, c->lit));
+    if (area > 0) /* of a built-in scene nobody measures the walls */
+        printf(", %.1f on 100 m2 of wall, %.1f lit", 100 * (double)c->windows / area, 100 * (double)c->lit / area);
     for (int v = NOC_WALL_SMALL; v < NOC_WALL_OWN; v++)
         if (c->walls[v]) {
             printf("%s%s %s", before, noc_text_count(a, c->walls[v]), noc_wall_verdict_name((noc_wall_verdict)v));

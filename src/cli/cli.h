@@ -151,8 +151,6 @@ noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_im
 char *cli_rules(const noc_report *report);
 /* "lamps 40 (312 klm), windows 8,000 (out)": groups that have lights; "none". free() it. */
 char *cli_groups(const noc_report *report);
-/* Colour temperature of what a light shines with, K; NaN where that is no black body's colour. */
-double cli_kelvin_of(const float emission[3]);
 void cli_print_lights(const char *rules, const char *groups, const noc_report *report); /* after these headings */
 
 /* render.c */

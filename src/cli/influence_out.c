@@ -36,7 +36,7 @@ static told tell(const influence_job *job, const noc_influence_row *row) {
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, t.at))
         t.at[0] = t.at[1] = t.at[2] = NAN;
     if (!noc_scene_get_light(job->scene, row->emitter.light, &light) && !light.removed)
-        t.kelvin = cli_kelvin_of(light.light.emission);
+        t.kelvin = noc_rgb_kelvin(light.light.emission);
     return t;
 }
 

@@ -265,13 +265,16 @@ void info_print_file(const noc_report_file *file, const info_args *args) {
 }
 
 static void print_scene(const char *name, const noc_scene_info *info) {
-    char a[32], b[32];
+    char a[64], b[32];
     printf("%s\n  %-11s built-in scene\n", name, "format");
     printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0],
            info->bounds_max[0], info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
     printf("  %-11s %s in %s mesh%s\n", "triangles", noc_text_count(a, info->triangles),
            noc_text_count(b, info->meshes), info->meshes == 1 ? "" : "es");
     info_print_counts(info->triangles_by_class);
+    if (info->windows)
+        printf("  %-11s %s, %s lit\n", "windows", noc_text_many(a, info->windows, "window"),
+               noc_text_count(b, info->windows_lit));
     printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
     _Static_assert(sizeof(kinds) / sizeof(*kinds) == NOC_LIGHT_KIND_COUNT, "every kind has its name");
@@ -283,6 +286,7 @@ static void print_scene(const char *name, const noc_scene_info *info) {
 static noc_status inspect_builtin(const info_args *args, const char *name, noc_log *log, noc_scene **scene) {
     *scene = noc_scene_create(log);
     noc_status status = *scene ? noc_scene_add_builtin(*scene, name, &args->builtin) : NOC_ERR_MEMORY;
+    status = status ? status : noc_scene_set_windows(*scene, &args->import.window);
     return status ? status : noc_scene_commit(*scene);
 }
 

@@ -105,7 +105,7 @@ static void put_lamp(line *l, const noc_light_info *light, const noc_report_lamp
     put_number(l, light->lumens, -1);
     put_word(l, kind_of(&light->light));
     put_text(l, group);
-    put_number(l, cli_kelvin_of(light->light.emission), 0);
+    put_number(l, noc_rgb_kelvin(light->light.emission), 0);
     put_number(l, told->watts, -1);
     put_text(l, told->profile);
     put_text(l, told->street);

@@ -71,21 +71,3 @@ void cli_print_lights(const char *rules, const char *groups, const noc_report *r
     free(matched);
     free(lit);
 }
-
-double cli_kelvin_of(const float emission[3]) {
-    double low = 1000, high = 15000, luminance = .2126 * emission[0] + .7152 * emission[1] + .0722 * emission[2];
-    float rgb[3];
-    if (!(luminance > 0))
-        return NAN;
-    for (int i = 0; i < 50; i++) { /* less red, and more of the others, the hotter it is */
-        double middle = (low + high) / 2;
-        noc_kelvin_rgb(middle, rgb);
-        bool hotter = (emission[1] + emission[2]) * (double)rgb[0] > (rgb[1] + rgb[2]) * (double)emission[0];
-        *(hotter ? &low : &high) = middle;
-    }
-    noc_kelvin_rgb(low, rgb);
-    for (int k = 0; k < 3; k++)
-        if (fabs(emission[k] / luminance - rgb[k]) > 1e-3)
-            return NAN;
-    return low;
-}

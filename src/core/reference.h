@@ -6,8 +6,9 @@
  * times the weight. With no more lights than rays every light gets its own. Lights are summed in chunks, so that the
  * second walk only evaluates the chunks that hold a threshold.
  *
- * Includers supply FRAME, light_of_all(CTX i), the same light in every lane, and the pixel's scratch: sum_put(CTX
- * chunk, x), sum_load(CTX chunk) and entry_put(CTX on, i, w), which adds light i with its weight. */
+ * Includers supply FRAME, light_of_all(CTX i), the same light in every lane, light_shines(CTX i), and the pixel's
+ * scratch: sum_put(CTX chunk, x), sum_load(CTX chunk) and entry_put(CTX on, i, w), which adds light i with its
+ * weight. */
 #ifndef CORE_REFERENCE_H
 #define CORE_REFERENCE_H
 
@@ -15,6 +16,7 @@
 #include "core/reservoir.h"
 
 FN light light_of_all(CTX uint32_t i);
+FN bool light_shines(CTX uint32_t i);
 FN void sum_put(CTX uint32_t chunk, real x);
 FN real sum_load(CTX uint32_t chunk);
 FN void entry_put(CTX mask on, uint32_t i, real w);
@@ -26,6 +28,8 @@ FN v3 reference_place(u32 key, u32 id) {
 }
 
 FN real reference_target(CTX surf s, u32 key, uint32_t i) {
+    if (!light_shines(PASS i)) /* a dark window */
+        return K(0.0f);
     v3 at = reference_place(key, KU(i));
     return target(PASS s, light_of_all(PASS i), at.x, at.y);
 }

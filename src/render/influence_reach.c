@@ -24,13 +24,14 @@ typedef struct reaching {
     struct core_context core;
     uint32_t lights[MOST_LIGHTS];
     size_t count;
+    double scale;     /* flux of all its lights over that of those */
     double angle;     /* sr, of a ray */
     double centre[3]; /* of the light that they leave */
     noc_reach *out;
     NOC_ARRAY(got) objects;
 } reaching;
 
-/* What all of its lights bring there, were nothing between. */
+/* What its lights bring there, were nothing between. */
 static double lux_at(const reaching *r, const noc_hit *h) {
     const struct core_context *ctx = &r->core;
     v3 p = V3((float)h->place[0], (float)h->place[1], (float)h->place[2]);
@@ -38,7 +39,7 @@ static double lux_at(const reaching *r, const noc_hit *h) {
     double lux = 0;
     for (size_t i = 0; i < r->count; i++)
         lux += light_lux(shining_sample(ctx, light_load(ctx, r->lights[i]), p, 0.5f, 0.5f), n);
-    return lux;
+    return lux * r->scale;
 }
 
 static bool give(reaching *r, const noc_hit *h, double lumens) {
@@ -133,6 +134,19 @@ static void fill_objects(const reaching *r, noc_reach_object *objects, size_t co
     }
 }
 
+/* Of many lights some, evenly among them, stand for all. */
+static void choose(reaching *r, const noc_emitters *emitters, uint32_t emitter) {
+    const noc_scene *s = r->view->scene;
+    size_t all = emitters->all.data[emitter].count, most = NOC_MIN(all, (size_t)MOST_LIGHTS), n = 0;
+    double chosen = 0;
+    for (uint32_t i = 0; i < s->lights.len && r->count < most; i++)
+        if (emitters->of[i] == emitter && n++ == r->count * all / most) {
+            r->lights[r->count++] = i;
+            chosen += noc_light_flux(&s->lights.data[i]);
+        }
+    r->scale = chosen > 0 ? emitters->all.data[emitter].lumens / chosen : 1;
+}
+
 static noc_status start(reaching *r, size_t light_index, noc_emitters *emitters) {
     const noc_scene *s = r->view->scene;
     if (light_index >= s->lights.len || s->lights.data[light_index].flags & NOC_LIGHT_FREE)
@@ -141,9 +155,7 @@ static noc_status start(reaching *r, size_t light_index, noc_emitters *emitters)
         return noc_no_memory(r->view->log, "influence");
     uint32_t emitter = emitters->of[light_index];
     noc_emitter_describe(s, emitters, emitter, &r->out->emitter);
-    for (uint32_t i = 0; i < s->lights.len && r->count < MOST_LIGHTS; i++)
-        if (emitters->of[i] == emitter)
-            r->lights[r->count++] = i;
+    choose(r, emitters, emitter);
     noc_asking by;
     r->core = (struct core_context){ .lights = s->lights.data, .profiles = s->profile_cells.data };
     return r->view->backend->ask(r->view->state, &(noc_render_params){ 0 }, false, &by);

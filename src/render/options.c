@@ -155,9 +155,9 @@ static const noc_option import_options[] = {
     TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, for built-in ones"),
     TEXTS(P, group_states, "group", "City", "NAME=STATE", "lights of a group: off, 0.3, 2200K, #ffb060; repeatable"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
-    SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities; auto: on"),
+    SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities, and those of builtin:city; auto: on"),
     REAL(P, window.lit_windows, "window-lit", "Windows", 0, 1, "",
-         "share of windows lit at 21 h, whatever the use"),
+         "share of windows lit at 21 h, of shops of builtin:city 3 times that"),
     REAL(P, window.hour, "hour", "Windows", 0, 24, "h",
          "time of day: scales that share, by the use"),
     REAL(P, window.width, "window-width", "Windows", 0.1, 50, "m", "width of a window, of flats"),
@@ -227,9 +227,8 @@ static const noc_option group_options[] = {
 
 #define P noc_city_params
 static const noc_option city_options[] = {
-    UINT(P, seed, "city-seed", "Built-in city", "another number, another city"),
+    UINT(P, seed, "city-seed", "Built-in city", "another number, another city, with other windows lit"),
     REAL(P, size, "city-size", "Built-in city", 150, 5000, "m", "edge of the square it covers"),
-    REAL(P, lit_windows, "city-lit", "Built-in city", 0, 1, "", "share of windows that are lit"),
     END,
 };
 #undef P

@@ -65,14 +65,15 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
 
 double noc_light_weight(const noc_light_record *r) { return sqrt(noc_light_flux(r)); }
 
-/* A light as it was made: what is off or dimmed for now, a dark window or a group, is looked at all the same. */
+/* A light as it was made: what is off or dimmed for now is looked at all the same, and windows as they are lit by
+ * default. */
 static bool light_get(const noc_scene *s, uint32_t i, view_light *out) {
     noc_light_record r = noc_light_made(s, i);
     if (r.flags & NOC_LIGHT_MOVES)
         return false;
-    const noc_scene_window *window = noc_light_weight(&r) > 0 ? NULL : noc_window_of(s, i);
+    const noc_scene_window *window = noc_window_of(s, i);
     if (window && !window->removed)
-        memcpy(r.e, window->emission, sizeof(r.e));
+        noc_window_first(window, r.e);
     noc_light_centre(&r, out->p);
     out->weight = noc_light_weight(&r);
     out->lamp = r.kind != NOC_LIGHT_TRIANGLE && r.kind != NOC_LIGHT_PARALLELOGRAM;

@@ -1,6 +1,6 @@
 /* Emitters. What comes and goes together is one: lights of an instance that share a name, triangles of a mesh that
- * shines, a window. Of what inputs call lamps, lights with one id that follow one another are one, unless they lie
- * apart: then the id is a word for many, as "lamp". */
+ * shines, parts of a pane. Of what inputs call lamps, lights with one id that follow one another are one, unless they
+ * lie apart: then the id is a word for many, as "lamp". */
 #include "scene/emitters.h"
 
 #include <math.h>
@@ -64,9 +64,15 @@ static bool take_instances(const noc_scene *s, noc_emitters *e) {
 }
 
 static bool take_windows(const noc_scene *s, noc_emitters *e) {
-    for (size_t i = 0; i < s->windows.len; i++)
-        if (!s->windows.data[i].removed && !add(e, NOC_EMITTER_WINDOW, s->windows.data[i].light, UINT32_MAX))
+    for (size_t i = 0; i < s->windows.len; i++) {
+        const noc_scene_window *w = &s->windows.data[i];
+        if (w->removed)
+            continue;
+        if (w->part && i && !w[-1].removed)
+            e->of[w->light] = e->of[w[-1].light];
+        else if (!add(e, NOC_EMITTER_WINDOW, w->light, UINT32_MAX))
             return false;
+    }
     return true;
 }
 

@@ -105,14 +105,19 @@ noc_status noc_kept_lights(noct_file *f, noc_scene *s) {
 typedef struct kept_window {
     uint32_t light;
     float emission[3], level;
-    uint32_t kind, removed;
+    uint32_t kind, flags, often;
 } kept_window;
+enum { WINDOW_REMOVED = 1, WINDOW_PART = 2, WINDOW_FLAGS = 3 };
 
 void noc_keep_windows(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "windows");
     for (size_t i = 0; i < s->windows.len; i++) {
         const noc_scene_window *v = &s->windows.data[i];
-        kept_window k = { .light = v->light, .level = v->level, .kind = v->kind, .removed = v->removed };
+        kept_window k = { .light = v->light,
+                          .level = v->level,
+                          .kind = v->kind,
+                          .flags = (v->removed ? WINDOW_REMOVED : 0) | (v->part ? WINDOW_PART : 0),
+                          .often = v->often };
         memcpy(k.emission, v->emission, sizeof(k.emission));
         noct_put(w, &k, sizeof(k));
     }
@@ -120,12 +125,12 @@ void noc_keep_windows(noct_writer *w, const noc_scene *s) {
 }
 
 static bool window_fits(const noc_scene *s, const kept_window *k) {
-    bool ok = k->light < s->lights.len && k->kind < NOC_WINDOW_KIND_COUNT && k->removed <= 1 && k->level >= 0 &&
-              k->level <= 1;
+    bool ok = k->light < s->lights.len && k->kind < NOC_WINDOW_KIND_COUNT && k->flags <= WINDOW_FLAGS &&
+              k->level >= 0 && k->level <= 1 && k->often <= UINT16_MAX;
     for (int c = 0; c < 3; c++)
         ok = ok && k->emission[c] >= 0 && k->emission[c] <= 1e12f;
     uint32_t own = NOC_LIGHT_OWNED | NOC_LIGHT_MOVES | NOC_LIGHT_FREE; /* a mesh's, which goes with that alone */
-    return ok && (k->removed || (s->lights.data[k->light].flags & own) == NOC_LIGHT_OWNED);
+    return ok && (k->flags & WINDOW_REMOVED || (s->lights.data[k->light].flags & own) == NOC_LIGHT_OWNED);
 }
 
 noc_status noc_kept_windows(noct_file *f, noc_scene *s) {
@@ -138,7 +143,9 @@ noc_status noc_kept_windows(noct_file *f, noc_scene *s) {
             return noct_wrong(f, "window %zu is none", i);
         noc_scene_window v = { .light = k[i].light, .level = k[i].level };
         v.kind = (unsigned char)k[i].kind;
-        v.removed = k[i].removed & 1;
+        v.removed = (k[i].flags & WINDOW_REMOVED) != 0;
+        v.part = (k[i].flags & WINDOW_PART) != 0;
+        v.often = k[i].often & UINT16_MAX;
         memcpy(v.emission, k[i].emission, sizeof(v.emission));
         s->windows.data[s->windows.len++] = v;
     }

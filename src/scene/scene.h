@@ -53,6 +53,7 @@ typedef struct noc_scene_mesh {
     const char *name; /* the scene's */
 } noc_scene_mesh;
 
+enum { NOC_WINDOW_OFTEN = 4096 };
 /* A window: a light that comes and goes with its mesh. */
 typedef struct noc_scene_window {
     uint32_t light;
@@ -60,6 +61,8 @@ typedef struct noc_scene_window {
     float level;          /* lit where the share of its kind is above it */
     unsigned kind : 8;    /* noc_window_kind */
     unsigned removed : 1; /* with its mesh: the light may be another one now */
+    unsigned part : 1;    /* a further part of the pane that the window before it is of */
+    unsigned often : 16;  /* the share of its kind is times this over NOC_WINDOW_OFTEN here, at most 1 */
 } noc_scene_window;
 _Static_assert(sizeof(noc_scene_window) <= 32, "a million windows are 32 MB at most");
 
@@ -467,6 +470,7 @@ void noc_windows_switch(noc_scene *s, const noc_window_switch *to, noc_changes *
 double noc_window_level(float level, uint32_t seed);
 enum { NOC_WINDOW_SEED = 1 };                                        /* the default, which windows are made with */
 noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light); /* NULL: the light is no window's, and never was */
+void noc_window_first(const noc_scene_window *w, float e[3]);        /* its emission by the default noc_window_params */
 void noc_window_forget(noc_scene *s, uint32_t light);                /* a light that goes; it need not be a window's */
 const char *noc_window_fault(const noc_window_params *p); /* what is wrong with lit_windows or hour, NULL if nothing */
 

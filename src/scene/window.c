@@ -32,14 +32,19 @@ const char *noc_wall_verdict_name(noc_wall_verdict verdict) {
     return (unsigned)verdict < NOC_WALL_VERDICT_COUNT ? names[verdict] : "unknown";
 }
 
-double noc_window_share(noc_window_kind kind, double lit, double hour) {
-    if ((unsigned)kind >= NOC_WINDOW_KIND_COUNT)
-        return 0;
+/* Over 21 h. */
+static double of_hour(noc_window_kind kind, double hour) {
     double h = fmod(hour, 24);
     h = h < 0 ? h + 24 : h;
     int a = (int)h % 24, b = (a + 1) % 24;
-    double part = h - floor(h), share = lit * ((1 - part) * (double)hours[kind][a] + part * (double)hours[kind][b]);
-    return NOC_CLAMP(share, 0, 1);
+    double part = h - floor(h);
+    return (1 - part) * (double)hours[kind][a] + part * (double)hours[kind][b];
+}
+
+double noc_window_share(noc_window_kind kind, double lit, double hour) {
+    if ((unsigned)kind >= NOC_WINDOW_KIND_COUNT)
+        return 0;
+    return NOC_CLAMP(lit * of_hour(kind, hour), 0, 1);
 }
 
 const char *noc_window_fault(const noc_window_params *p) {
@@ -61,14 +66,16 @@ double noc_window_level(float level, uint32_t seed) {
 
 static void emission_of(const noc_scene_window *w, const noc_window_switch *to,
                         const double share[NOC_WINDOW_KIND_COUNT], float e[3]) {
-    bool lit = noc_window_level(w->level, to->seed) < share[w->kind];
+    double often = (double)w->often / NOC_WINDOW_OFTEN;
+    bool lit = noc_window_level(w->level, to->seed) < NOC_MIN(share[w->kind] * often, 1);
     for (int k = 0; k < 3; k++)
         e[k] = lit ? w->emission[k] : 0;
 }
 
+/* Of all kinds, beyond 1 where the hour says so: what is lit seldom follows it still. */
 static void shares(const noc_window_switch *to, double share[NOC_WINDOW_KIND_COUNT]) {
     for (int kind = 0; kind < NOC_WINDOW_KIND_COUNT; kind++)
-        share[kind] = noc_window_share((noc_window_kind)kind, to->lit, to->hour);
+        share[kind] = to->lit * of_hour((noc_window_kind)kind, to->hour);
 }
 
 bool noc_scene_reserve_walls(noc_scene *s) {
@@ -137,6 +144,14 @@ noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light) {
             high = middle;
     }
     return low < s->windows.len && s->windows.data[low].light == light ? &s->windows.data[low] : NULL;
+}
+
+void noc_window_first(const noc_scene_window *w, float e[3]) {
+    const noc_window_params params = noc_window_default_params();
+    const noc_window_switch to = { params.lit_windows, params.hour, params.seed };
+    double share[NOC_WINDOW_KIND_COUNT];
+    shares(&to, share);
+    emission_of(w, &to, share, e);
 }
 
 void noc_window_forget(noc_scene *s, uint32_t light) {

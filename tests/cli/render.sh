@@ -43,7 +43,7 @@ test "$(meta a.png view) $(meta c.png view)" = "own street" && test -z "$(meta b
     out
 result $? "and the view, the scene's counts, and no option of other scenes"
 run render "$source_dir/tests/cli/city.gml" --size 32x18 --frames 1 -o b.png
-test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-lit|city-seed|scene-seed|auto-ev100):' &&
+test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-seed|scene-seed|auto-ev100):' &&
     meta b.png |
     grep -q '^tonemap: '
 result $? "a real city's picture has no option of built-in scenes"
@@ -130,7 +130,7 @@ for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --
     test $status = 0 && ! cmp -s r.png b.png; result $? "restir: $switch changes the picture"
 done
 for switch in --no-learn --shadow-rays=2 --no-final-ray --no-jitter --no-accumulate --no-emitters \
-    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --city-lit=1 \
+    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --window-lit=1 \
     --fov=80; do
     run render $small $switch -o b.png
     test $status = 0 && ! cmp -s a.png b.png; result $? "$switch changes the picture"

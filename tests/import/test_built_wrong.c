@@ -171,8 +171,8 @@ static void test_together(void **state) {
              *windows = section(b, "windows", &words[2]), *tables = section(b, "tables", &words[3]);
     size_t lights = words[0] / 2; /* of each of the two that stand */
     assert_true(lights > 1 && words[1] == 3 * 13 && !instances[13] && instances[0] == instances[26]);
-    assert_true(windows[0] < windows[7] && windows[7] < lit[0]); /* lights of cars come last */
-    size_t own = words[2] / 7 - 1;
+    assert_true(windows[0] < windows[8] && windows[8] < lit[0]); /* lights of cars come last */
+    size_t own = words[2] / 8 - 1;
     const struct {
         uint32_t *word, value;
         const char *what;
@@ -182,7 +182,7 @@ static void test_together(void **state) {
                   { &instances[1 + 1], bits_of(1), "instance 0 is none" },      /* a shear */
                   { &instances[27 + 10], bits_of(-1), "instance 2 is none" },   /* a mirror */
                   { &instances[1 + 10], bits_of(1e-9f), "instance 0 is none" }, /* flat */
-                  { &windows[7 * own], lit[0], "window" },
+                  { &windows[8 * own], lit[0], "window" },
                   { &tables[0], 1, "the table of profile 1 lies elsewhere" } }; /* among the heads */
     for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
         uint32_t before = *wrong[i].word;

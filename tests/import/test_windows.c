@@ -3,6 +3,7 @@
 #include "fake_reader.h"
 
 #include <nocturne/image.h>
+#include <nocturne/influence.h>
 #include <nocturne/render.h>
 
 /* A house of 40 m by 20 m, 18 m high, with all its walls; kind 0 is a building, 1 and 2 are walls and roofs. */
@@ -97,6 +98,53 @@ static void test_own(void **state) {
             assert_close(info.area, 1.5, 1e-3);
         }
     }
+    finish(&r);
+}
+
+/* Panes that are no rectangles, of five corners and of four: a light a triangle, and one light each to people. */
+#define SLANTED                                                                                                        \
+    "FAKE city\ncrs EPSG:25832\nobject 0 own 3\n"                                                                      \
+    "polygon 1 678000 5404000 370 678010 5404000 370 678010 5404000 376 678000 5404000 376\n"                          \
+    "polygon 5 678001 5403999.95 371 678003 5403999.95 371 678003 5403999.95 373 678002 5403999.95 374 "               \
+    "678001 5403999.95 373\n"                                                                                          \
+    "polygon 5 678006 5403999.95 371 678009 5403999.95 371 678008 5403999.95 373 678007 5403999.95 373\n"              \
+    "end\n"
+
+static void check_panes(const noc_scene *s) {
+    noc_emitter e[5];
+    int of_three = 0;
+    double lumens = 0;
+    for (size_t i = 0; i < 5; i++) {
+        assert_int_equal(noc_scene_get_emitter(s, s->windows.data[i].light, &e[i]), NOC_OK);
+        assert_int_equal(e[i].kind, NOC_EMITTER_WINDOW);
+        assert_string_equal(e[i].name, "own");
+        of_three += e[i].light_count == 3;
+        assert_true(e[i].light_count == 3 || e[i].light_count == 2);
+        assert_true((e[i].light == e[0].light) == (e[i].light_count == e[0].light_count));
+        lumens += e[i].lumens / (double)e[i].light_count;
+    }
+    assert_int_equal(of_three, 3);
+    double all = 0;
+    for (size_t i = 0; i < 5; i++)
+        all += noc_light_flux(&s->lights.data[s->windows.data[i].light]);
+    assert_true(all > 0);
+    assert_close(lumens, all, 1e-4 * all);
+}
+
+static void test_panes(void **state) {
+    (void)state;
+    struct run r, again;
+    load(&r, SLANTED, 1, 21);
+    assert_int_equal(r.info.lights_by_kind[NOC_LIGHT_TRIANGLE], 5);
+    check_panes(r.scene);
+    char built[128];
+    snprintf(built, sizeof(built), "%s", file("b", ""));
+    assert_int_equal(noc_scene_save(r.scene, built, NULL), NOC_OK); /* a built city knows them, too */
+    start(&again);
+    load_with(&again, noc_import_default_params(), false, PATHS(built));
+    assert_int_equal(again.status, NOC_OK);
+    check_panes(again.scene);
+    finish(&again);
     finish(&r);
 }
 
@@ -391,10 +439,10 @@ static void test_progress(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),       cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_switched),   cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_no_memory),  cmocka_unit_test(test_threads), cmocka_unit_test(test_progress),
-        cmocka_unit_test(test_same_views), cmocka_unit_test(test_seed),
+        cmocka_unit_test(test_made),     cmocka_unit_test(test_own),        cmocka_unit_test(test_panes),
+        cmocka_unit_test(test_ratio),    cmocka_unit_test(test_switched),   cmocka_unit_test(test_share),
+        cmocka_unit_test(test_glass),    cmocka_unit_test(test_no_memory),  cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_progress), cmocka_unit_test(test_same_views), cmocka_unit_test(test_seed),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -473,6 +473,41 @@ static void a_lamp_lights_its_closed_form(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A shining strip in 40 triangles lights as the same one in 2: from afar as one that is small. */
+static void many_lights_of_one_emitter_all_count(void **state) {
+    (void)state;
+    noc_reach reach[2];
+    for (int fine = 0; fine < 2; fine++) {
+        noc_scene *s = noc_scene_create(NULL);
+        add_floor(s, matte(s, 0.5f), 0, 0, 0, 300);
+        int glow = noc_scene_add_material(s, &(noc_material){ .roughness = 1, .emission = { 90, 90, 90 } });
+        double xyz[3 * 42];
+        uint32_t triangles[3 * 40];
+        int steps = fine ? 20 : 1;
+        for (int i = 0; i <= steps; i++)
+            for (int k = 0; k < 2; k++)
+                memcpy(xyz + 3 * (2 * i + k), (double[]){ 0, 2.0 * i / steps, 4 + 0.5 * k }, 3 * sizeof(double));
+        for (uint32_t i = 0; i < (uint32_t)steps; i++)
+            memcpy(triangles + 6 * i, (uint32_t[]){ 2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 1, 2 * i + 2, 2 * i + 3 },
+                   6 * sizeof(uint32_t));
+        noc_mesh mesh = { .vertex_count = 2 * (size_t)steps + 2,
+                          .positions = xyz,
+                          .triangle_count = 2 * (size_t)steps,
+                          .indices = triangles,
+                          .material = glow };
+        assert_true(noc_scene_add_mesh(s, &mesh) >= 0);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        noc_view *view = own_view(s, 2, NULL);
+        assert_int_equal(noc_view_reach(view, 0, NULL, &reach[fine], NULL, 0, NULL), NOC_OK);
+        assert_int_equal(reach[fine].emitter.light_count, 2 * (size_t)steps);
+        close_view(view);
+        noc_scene_destroy(s);
+    }
+    assert_true(fabs(reach[1].emitter.lumens / reach[0].emitter.lumens - 1) < 1e-4);
+    assert_true(reach[0].met > 10 && fabs(reach[1].met / reach[0].met - 1) < 0.02);
+    assert_true(reach[0].far > 5 && fabs(reach[1].far / reach[0].far - 1) < 0.02);
+}
+
 static void wrong_parts_are_refused(void **state) {
     (void)state;
     noc_patch wrong[] = { point_at(0, 0, 0), point_at(NAN, 0, 0), point_at(0, 0, 0), point_at(0, 0, 0) };
@@ -502,6 +537,7 @@ int main(void) {
                                         cmocka_unit_test(edits_begin_anew_and_cancelling_keeps),
                                         cmocka_unit_test(lights_are_told_as_people_mean_them),
                                         cmocka_unit_test(a_lamp_lights_its_closed_form),
+                                        cmocka_unit_test(many_lights_of_one_emitter_all_count),
                                         cmocka_unit_test(wrong_parts_are_refused) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@ static void leave(place *p) {
 
 static place city(void) {
     noc_scene *s = noc_scene_create(NULL);
-    assert_int_equal(noc_scene_add_city(s, &(noc_city_params){ .seed = 3, .size = 180, .lit_windows = .3 }), NOC_OK);
+    assert_int_equal(noc_scene_add_city(s, &(noc_city_params){ .seed = 3, .size = 180 }), NOC_OK);
     return enter(s);
 }
 

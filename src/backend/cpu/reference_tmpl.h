@@ -5,6 +5,10 @@
 #include "core/reference.h"
 
 FN light light_of_all(CTX uint32_t i) { return light_splat(ctx, i); }
+FN bool light_shines(CTX uint32_t i) {
+    const float *e = ctx->lights[i].e;
+    return e[0] > 0 || e[1] > 0 || e[2] > 0;
+}
 FN void sum_put(CTX uint32_t chunk, real x) { rstore(ctx->at.reference->sums[chunk] + ctx->at.lane, x); }
 FN real sum_load(CTX uint32_t chunk) { return rload(ctx->at.reference->sums[chunk] + ctx->at.lane); }
 

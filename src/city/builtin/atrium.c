@@ -215,7 +215,7 @@ static void lantern(kit *k, const materials *m, double half_width) {
     kit_light(k, &l);
 }
 
-noc_status scene_atrium(noc_scene *scene, const noc_builtin_params *params) {
+noc_status scene_atrium(noc_scene *scene, const noc_builtin_params *params, bool windows) {
     kit k = kit_start(scene);
     const materials m = { .stone = kit_material(&k, .52f, .48f, .41f, 0, 1),
                           .plaster = kit_material(&k, .58f, .52f, .43f, 0, 1),

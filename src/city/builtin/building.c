@@ -125,12 +125,13 @@ static void dormer(town *t, const town_wall *w, const house *h, double s, double
     town_quad(t, h->tiles, q[3], q[2], q[6], q[7]);
     town_quad(t, h->front.wall, q[4], q[0], q[3], q[7]);
     town_quad(t, h->front.wall, q[1], q[5], q[6], q[2]);
-    town_facade pane = h->front;
     town_rng rng = { town_hash(h->seed, 300 + (uint32_t)index) };
-    town_wall_rect(t, TM_GLASS, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.012);
-    if (town_chance(&rng, t->params.lit_windows))
-        town_wall_light(t, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.03,
-                        pane.seed & 1 ? LIGHT_WARM : LIGHT_CANDLE, pane.seed & 2 ? 85 : 42, "window");
+    town_room room = { .kind = NOC_WINDOW_FLAT,
+                       .level = town_next(&rng),
+                       .often = t->often,
+                       .colour = h->front.seed & 1 ? LIGHT_WARM : LIGHT_CANDLE,
+                       .luminance = h->front.seed & 2 ? 85 : 42 };
+    town_wall_pane(t, TM_GLASS, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.03, &room);
 }
 
 static void chimney(town *t, const house *h, vec2 p, vec2 dir, double z) {

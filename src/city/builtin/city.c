@@ -312,7 +312,7 @@ void town_plan(town *t, const noc_city_params *params) {
     axis_make(t, 1, t->half > 120);
 }
 
-noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t)) {
+noc_status town_build(noc_scene *scene, const noc_city_params *params, const town_style *style) {
     if (noc_option_check(noc_city_options(), params, "city", scene->log))
         return NOC_ERR_ARGUMENT;
     if (scene->committed)
@@ -321,6 +321,8 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
     if (!t)
         return noc_scene_out_of_memory(scene);
     t->scene = scene;
+    t->switched = style->windows;
+    t->often = style->often;
     town_plan(t, params);
     add_materials(t);
     t->lamps = noc_scene_group_named(scene, "lamps");
@@ -334,8 +336,8 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
             cell_build(t, i, j, &id);
     diagonal_markings(t);
     belt(t);
-    if (dress)
-        dress(t);
+    if (style->dress)
+        style->dress(t);
     double edge = 0.5 * params->size;
     const double rim[12] = { -edge, -edge, 0.05, edge, -edge, 0.05, edge, edge, 0.05, -edge, edge, 0.05 };
     city_add_surroundings(scene, rim, 4, t->material[TM_LAWN]);
@@ -344,7 +346,9 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
         array_free(&t->batch[m].xyz);
         array_free(&t->batch[m].indices);
     }
+    array_free(&t->panes);
     free(t);
+    noc_scene_light_windows(scene, &noc_window_default_params());
     /* what failed was reported where it did */
     return scene->no_memory ? NOC_ERR_MEMORY : failed ? NOC_ERR_ARGUMENT : NOC_OK;
 }
@@ -353,5 +357,5 @@ noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
     if (!scene)
         return NOC_ERR_ARGUMENT;
     noc_city_params defaults = noc_city_default_params();
-    return town_build(scene, params ? params : &defaults, NULL);
+    return town_build(scene, params ? params : &defaults, &(town_style){ .windows = true, .often = 1 });
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #define SIZE 270.0 /* m: three by three blocks */
+#define LIT 0.06   /* share of rooms that are, where those of other cities are by default */
 #define POST_APART 7.5
 #define POST_HEIGHT 6.1
 #define SAG 0.8
@@ -158,10 +159,9 @@ static void dress(town *t) {
     t->failed = t->failed || noc_scene_set_camera(t->scene, &c) != NOC_OK;
 }
 
-noc_status scene_cityscape(noc_scene *scene, const noc_builtin_params *params) {
+noc_status scene_cityscape(noc_scene *scene, const noc_builtin_params *params, bool windows) {
     noc_city_params city = noc_city_default_params();
     city.seed = params->seed;
     city.size = SIZE;
-    city.lit_windows = 0.06;
-    return town_build(scene, &city, dress);
+    return town_build(scene, &city, &(town_style){ windows, LIT / noc_window_default_params().lit_windows, dress });
 }

@@ -66,10 +66,10 @@ void kit_knotted(kit *k, int nu, int nv, const kit_knot *knot);
 void kit_light(kit *k, const noc_light *light);
 void kit_camera(kit *k, vec3 eye, vec3 target, double fov_deg);
 
-/* The scenes, by name. */
-noc_status scene_cityscape(noc_scene *scene, const noc_builtin_params *params); /* cityscape.c */
-noc_status scene_mess(noc_scene *scene, const noc_builtin_params *params);
-noc_status scene_single(noc_scene *scene, const noc_builtin_params *params);
-noc_status scene_atrium(noc_scene *scene, const noc_builtin_params *params);
+/* The scenes, by name; windows: those that they have are switched, else they are dark glass. */
+noc_status scene_cityscape(noc_scene *scene, const noc_builtin_params *params, bool windows); /* cityscape.c */
+noc_status scene_mess(noc_scene *scene, const noc_builtin_params *params, bool windows);
+noc_status scene_single(noc_scene *scene, const noc_builtin_params *params, bool windows);
+noc_status scene_atrium(noc_scene *scene, const noc_builtin_params *params, bool windows);
 
 #endif

@@ -103,6 +103,41 @@ void town_pole(town *t, town_mat mat, vec2 centre, int sides, double r0, double 
     town_flat(t, mat, top, sides, z1);
 }
 
+void town_pane_add(town *t, town_mat mat, const double p[3], const double u[3], const double v[3],
+                   const town_room *room) {
+    town_pane pane = { .mat = mat,
+                       .triangle = (uint32_t)(t->batch[mat].indices.len / 3),
+                       .shape = { .kind = NOC_LIGHT_PARALLELOGRAM, .group = t->windows },
+                       .window = { .level = (float)NOC_MIN(room->level, 1 - 0x1p-24),
+                                   .kind = (unsigned char)room->kind,
+                                   .often = (unsigned short)(room->often * NOC_WINDOW_OFTEN + 0.5) } };
+    double corner[3][3];
+    for (int k = 0; k < 3; k++) {
+        pane.window.emission[k] = (float)(room->luminance * t->white[room->colour][k]);
+        pane.shape.position[k] = p[k];
+        pane.shape.edge_u[k] = u[k];
+        pane.shape.edge_v[k] = v[k];
+        corner[0][k] = p[k] + u[k];
+        corner[1][k] = p[k] + u[k] + v[k];
+        corner[2][k] = p[k] + v[k];
+    }
+    town_quad(t, mat, p, corner[0], corner[1], corner[2]);
+    if (t->switched && !t->failed && !array_push(&t->panes, pane))
+        t->failed = noc_scene_out_of_memory(t->scene);
+}
+
+/* Those that triangles of a batch show, which became that mesh. */
+static void add_windows(town *t, town_mat mat, int mesh) {
+    for (size_t i = 0; i < t->panes.len && !t->failed; i++) {
+        const town_pane *p = &t->panes.data[i];
+        const uint32_t both[2] = { p->triangle, p->triangle + 1 };
+        if (p->mat == mat)
+            t->failed = !noc_scene_add_window(
+                t->scene, mesh,
+                &(noc_pane){ .triangles = both, .triangle_count = 2, .shape = p->shape, .window = p->window });
+    }
+}
+
 void town_flush(town *t, const char *fmt, ...) {
     char name[96];
     va_list ap;
@@ -119,9 +154,12 @@ void town_flush(town *t, const char *fmt, ...) {
                           .indices = b->indices.data,
                           .material = t->material[m],
                           .name = name };
-        t->failed = t->failed || noc_scene_add_mesh(t->scene, &mesh) < 0;
+        int index = t->failed ? -1 : noc_scene_add_mesh(t->scene, &mesh);
+        t->failed = index < 0;
+        add_windows(t, (town_mat)m, index);
         b->xyz.len = b->indices.len = 0;
     }
+    t->panes.len = 0;
 }
 
 void town_light(town *t, const noc_light *light, int colour, double luminance) {

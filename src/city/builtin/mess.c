@@ -241,7 +241,7 @@ static vec3 rug(const void *side, double u, double v) {
     return v3((u - 0.5) * *(const double *)side, (v - 0.5) * *(const double *)side, 0);
 }
 
-noc_status scene_mess(noc_scene *scene, const noc_builtin_params *params) {
+noc_status scene_mess(noc_scene *scene, const noc_builtin_params *params, bool windows) {
     if (noc_option_check(noc_builtin_options(), params, "mess", scene->log))
         return NOC_ERR_ARGUMENT;
     static const float paint[][3] = { { .62f, .60f, .56f }, { .55f, .30f, .24f }, { .26f, .42f, .52f },

@@ -141,14 +141,16 @@ static void uplight(town *t, vec2 p, vec2 at, double z, double rise, double lume
     town_light(t, &l, LIGHT_WARM, lumens / (3.14159265358979 * 3.14159265358979 * r * r));
 }
 
+/* Where it is lit all its windows are. */
 static void church_windows(town *t, const town_wall *w, int n, double z0, double z1, double width, bool lit) {
+    const town_room room = { NOC_WINDOW_FLAT, 0.5, TOWN_SHOPS_OFTEN, LIGHT_CANDLE, 28 };
     for (int i = 0; i < n; i++) {
         double s = w->length * (i + 0.5) / n;
         town_wall_rect(t, TM_STONE, w, s - 0.5 * width - 0.3, s + 0.5 * width + 0.3, z0 - 0.3, z1 + 0.3, 0.05);
         town_wall_rect(t, TM_GLASS, w, s - 0.5 * width, s + 0.5 * width, z0, z1, 0.07);
         if (lit)
-            town_wall_light(t, w, s - 0.5 * width + 0.08, s + 0.5 * width - 0.08, z0 + 0.1, z1 - 0.1, 0.09,
-                            LIGHT_CANDLE, 28, "church window");
+            town_wall_pane(t, TM_GLASS, w, s - 0.5 * width + 0.08, s + 0.5 * width - 0.08, z0 + 0.1, z1 - 0.1, 0.09,
+                           &room);
     }
 }
 

@@ -35,7 +35,7 @@ static void lamp(kit *k, vec3 p, vec3 at, double h, double luminance) {
     kit_place(k, v3(0, 0, 0), 0, 1);
 }
 
-noc_status scene_single(noc_scene *scene, const noc_builtin_params *params) {
+noc_status scene_single(noc_scene *scene, const noc_builtin_params *params, bool windows) {
     static const double plinth[][2] = { { 0, 0 },       { 1.25, 0 },    { 1.25, 0.12 }, { 1.08, 0.2 },  { 0.98, 0.26 },
                                         { 0.98, 0.62 }, { 1.06, 0.68 }, { 1.16, 0.74 }, { 1.16, 0.84 }, { 0, 0.84 } };
     kit k = kit_start(scene);

@@ -112,12 +112,23 @@ typedef struct town_batch {
     NOC_ARRAY(uint32_t) indices;
 } town_batch;
 
+/* A pane of a window: two triangles of a batch. */
+typedef struct town_pane {
+    town_mat mat;
+    uint32_t triangle; /* the first one in the batch */
+    noc_light shape;
+    noc_scene_window window;
+} town_pane;
+
 typedef struct town {
     noc_scene *scene;
     noc_city_params params;
     int material[TM_COUNT];
+    bool switched;              /* windows are lights, which are switched; else they are dark glass */
+    double often;               /* how much more often than elsewhere rooms are lit */
     int lamps, windows, cars;   /* groups of lights */
-    town_batch batch[TM_COUNT]; /* waiting for town_flush */
+    town_batch batch[TM_COUNT]; /* waiting for town_flush, and */
+    NOC_ARRAY(town_pane) panes; /* what of them shows windows */
     double half;                /* half the edge of the plan */
     town_axis axis[2];          /* streets across x, across y */
     float white[8][3];          /* colours of lamps and windows, luminance 1; indices below */
@@ -126,8 +137,13 @@ typedef struct town {
 
 enum { LIGHT_SODIUM, LIGHT_CANDLE, LIGHT_WARM, LIGHT_WHITE, LIGHT_NEUTRAL, LIGHT_COOL, LIGHT_SCREEN };
 
-/* Builds the city into the scene; dress, where not NULL, adds to it when all else is there. */
-noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t));
+/* What built-in scenes make of the city. */
+typedef struct town_style {
+    bool windows;           /* are switched; false: they are dark glass */
+    double often;           /* of town */
+    void (*dress)(town *t); /* adds to the city when all else is there; may be NULL */
+} town_style;
+noc_status town_build(noc_scene *scene, const noc_city_params *params, const town_style *style);
 
 /* Streets and blocks, of an empty town. params are within their rows. */
 void town_plan(town *t, const noc_city_params *params);
@@ -162,9 +178,22 @@ void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double
                     double before);
 /* A band along the whole wall that stands before it: cornices, plinths, slabs. */
 void town_wall_band(town *t, town_mat mat, const town_wall *w, double z0, double z1, double before);
-/* A parallelogram light on a wall. */
-void town_wall_light(town *t, const town_wall *w, double s0, double s1, double z0, double z1, double before, int colour,
-                     double luminance, const char *name);
+/* What is behind a pane, and how it shines when it is lit. */
+typedef struct town_room {
+    noc_window_kind kind;
+    double level; /* noc_scene_window; below 1 */
+    double often; /* noc_scene_window */
+    int colour;
+    double luminance;
+} town_room;
+/* Shops and churches are lit wherever a third of the rooms are. */
+#define TOWN_SHOPS_OFTEN 3.0
+/* A pane of that surface: the parallelogram at p, facing u x v. */
+void town_pane_add(town *t, town_mat mat, const double p[3], const double u[3], const double v[3],
+                   const town_room *room);
+/* The same on a wall. */
+void town_wall_pane(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1,
+                    double before, const town_room *room);
 
 typedef struct town_facade {
     town_mat wall;

@@ -53,52 +53,52 @@ void town_wall_band(town *t, town_mat mat, const town_wall *w, double z0, double
     wall_box(t, mat, w, 0, w->length, z0, z1, 0, before, w->mitre0 * before, w->mitre1 * before);
 }
 
-void town_wall_light(town *t, const town_wall *w, double s0, double s1, double z0, double z1, double before, int colour,
-                     double luminance, const char *name) {
-    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = name, .group = t->windows };
-    town_wall_point(w, s0, z0, before, l.position);
-    l.edge_u[0] = w->dir.x * (s1 - s0);
-    l.edge_u[1] = w->dir.y * (s1 - s0);
-    l.edge_v[2] = z1 - z0;
-    town_light(t, &l, colour, luminance);
+void town_wall_pane(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1,
+                    double before, const town_room *room) {
+    double p[3];
+    const double u[3] = { w->dir.x * (s1 - s0), w->dir.y * (s1 - s0), 0 }, v[3] = { 0, 0, z1 - z0 };
+    town_wall_point(w, s0, z0, before, p);
+    town_pane_add(t, mat, p, u, v, room);
 }
 
 /* ---- windows ---- */
 
-/* Rooms are lit in groups: two windows of one flat share lamp and brightness, an office storey often works as one. */
-static bool window_lit(const town *t, const town_facade *f, int storey, int column, int *colour, double *luminance) {
-    static const double levels[] = { 20, 26, 34, 45, 60, 85, 120, 170 };
-    uint32_t group = town_hash(f->seed, (uint32_t)(storey * 64 + (f->office ? column / 3 : column / 2)));
-    town_rng rng = { group };
-    double share = t->params.lit_windows, u = town_next(&rng);
-    if (f->office && share > 0.02 && share < 0.98) { /* busy and empty storeys; the mean stays */
-        town_rng whole = { town_hash(f->seed, 7777u + (uint32_t)storey) };
-        double spread = 0.9 * NOC_MIN(share, 1 - share);
-        share += town_chance(&whole, 0.5) ? spread : -spread;
-    }
-    if (!(u < share))
-        return false;
-    double v = town_next(&rng);
-    if (f->office)
-        *colour = v < 0.35 ? LIGHT_COOL : v < 0.8 ? LIGHT_NEUTRAL : LIGHT_WHITE;
-    else
-        *colour = v < 0.16   ? LIGHT_CANDLE
-                  : v < 0.66 ? LIGHT_WARM
-                  : v < 0.84 ? LIGHT_WHITE
-                  : v < 0.94 ? LIGHT_NEUTRAL
-                             : LIGHT_SCREEN;
-    int low = *colour == LIGHT_SCREEN ? 0 : f->office ? 2 : 1, n = *colour == LIGHT_SCREEN ? 2 : 7 - low;
-    *luminance = levels[low + town_below(&rng, n)];
-    return true;
+/* The share of lit rooms from which on an office is lit, by its number u. Storeys are busy or empty: where that share
+ * is s, so many less of them are lit, or more, and the mean stays. */
+static double office_level(double u, bool busy) {
+    const double spread = 0.9;
+    if (busy)
+        return u < 0.5 + 0.5 * spread ? u / (1 + spread) : (u - spread) / (1 - spread);
+    return u < 0.5 - 0.5 * spread ? u / (1 - spread) : (u + spread) / (1 + spread);
 }
 
-/* Blinds and curtains take part of the pane: the dark glass behind shows there. */
-static void lit_pane(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4],
-                     double before) {
-    int colour;
-    double luminance, s0 = r[0], s1 = r[1], z0 = r[2], z1 = r[3];
-    if (!window_lit(t, f, storey, column, &colour, &luminance))
-        return;
+/* Rooms are lit in groups: two windows of one flat share lamp and brightness, an office storey often works as one. */
+static town_room room_behind(const town *t, const town_facade *f, int storey, int column) {
+    static const double levels[] = { 20, 26, 34, 45, 60, 85, 120, 170 };
+    uint32_t group = town_hash(f->seed, (uint32_t)(storey * 64 + (f->office ? column / 3 : column / 2)));
+    town_rng rng = { group }, whole = { town_hash(f->seed, 7777u + (uint32_t)storey) };
+    double u = town_next(&rng), v = town_next(&rng);
+    town_room r = { .kind = f->office ? NOC_WINDOW_OFFICE : NOC_WINDOW_FLAT,
+                    .level = f->office ? office_level(u, town_chance(&whole, 0.5)) : u,
+                    .often = t->often };
+    if (f->office)
+        r.colour = v < 0.35 ? LIGHT_COOL : v < 0.8 ? LIGHT_NEUTRAL : LIGHT_WHITE;
+    else
+        r.colour = v < 0.16   ? LIGHT_CANDLE
+                   : v < 0.66 ? LIGHT_WARM
+                   : v < 0.84 ? LIGHT_WHITE
+                   : v < 0.94 ? LIGHT_NEUTRAL
+                              : LIGHT_SCREEN;
+    int low = r.colour == LIGHT_SCREEN ? 0 : f->office ? 2 : 1, n = r.colour == LIGHT_SCREEN ? 2 : 7 - low;
+    r.luminance = levels[low + town_below(&rng, n)];
+    return r;
+}
+
+/* Blinds and curtains take part of the pane, which stays dark. */
+static void glass(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4],
+                  double before) {
+    town_room room = room_behind(t, f, storey, column);
+    double s0 = r[0], s1 = r[1], z0 = r[2], z1 = r[3];
     town_rng rng = { town_hash(f->seed ^ 0x5bd1e995u, (uint32_t)(storey * 64 + column)) };
     double u = town_next(&rng), width = s1 - s0, height = z1 - z0;
     if (u < 0.2)
@@ -107,11 +107,14 @@ static void lit_pane(town *t, const town_wall *w, const town_facade *f, int stor
         s1 -= width * town_range(&rng, 0.3, 0.55);
     else if (u < 0.4)
         s0 += width * town_range(&rng, 0.3, 0.55);
-    town_wall_light(t, w, s0, s1, z0, z1, before, colour, luminance, "window");
+    town_wall_rect(t, TM_GLASS, w, r[0], s0, z0, z1, before);
+    town_wall_rect(t, TM_GLASS, w, s1, r[1], z0, z1, before);
+    town_wall_rect(t, TM_GLASS, w, s0, s1, z1, r[3], before);
+    town_wall_pane(t, TM_GLASS, w, s0, s1, z0, z1, before, &room);
 }
 
-/* An opening cut into the wall: reveals and a back at -depth. */
-static void recess(town *t, town_mat side, town_mat back, const town_wall *w, const double r[4], double depth) {
+/* An opening cut into the wall, without its back at -depth. */
+static void reveals(town *t, town_mat side, town_mat floor, const town_wall *w, const double r[4], double depth) {
     double f[4][3], b[4][3];
     const double s[4] = { r[0], r[1], r[1], r[0] }, z[4] = { r[2], r[2], r[3], r[3] };
     for (int i = 0; i < 4; i++) {
@@ -119,8 +122,7 @@ static void recess(town *t, town_mat side, town_mat back, const town_wall *w, co
         town_wall_point(w, s[i], z[i], -depth, b[i]);
     }
     for (int i = 0; i < 4; i++) /* floor, right, ceiling, left; all face into the opening */
-        town_quad(t, i == 0 && back == TM_SHOP ? TM_SHOP_FLOOR : side, f[i], f[(i + 1) % 4], b[(i + 1) % 4], b[i]);
-    town_quad(t, back, b[0], b[1], b[2], b[3]);
+        town_quad(t, i ? side : floor, f[i], f[(i + 1) % 4], b[(i + 1) % 4], b[i]);
 }
 
 /* A thin slab: its front and top only, the rest is seen by nobody. */
@@ -136,17 +138,16 @@ static void sill(town *t, const town_wall *w, double s0, double s1, double z) {
 
 static void window(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4]) {
     if (!f->deep) {
-        town_wall_rect(t, TM_GLASS, w, r[0], r[1], r[2], r[3], 0.012);
-        lit_pane(t, w, f, storey, column, r, 0.03);
+        glass(t, w, f, storey, column, r, 0.03);
         return;
     }
-    const double depth = 0.16;
+    const double depth = 0.14;
     double middle = 0.5 * (r[0] + r[1]), transom = r[2] + 0.68 * (r[3] - r[2]);
-    recess(t, f->wall, TM_GLASS, w, r, depth);
-    lit_pane(t, w, f, storey, column, r, -depth + 0.02);
-    town_wall_rect(t, TM_FRAME, w, middle - 0.035, middle + 0.035, r[2], r[3], -depth + 0.045);
+    reveals(t, f->wall, f->wall, w, r, depth);
+    glass(t, w, f, storey, column, r, -depth);
+    town_wall_rect(t, TM_FRAME, w, middle - 0.035, middle + 0.035, r[2], r[3], -depth + 0.025);
     if (r[3] - r[2] > 1.5)
-        town_wall_rect(t, TM_FRAME, w, r[0], r[1], transom - 0.03, transom + 0.03, -depth + 0.05);
+        town_wall_rect(t, TM_FRAME, w, r[0], r[1], transom - 0.03, transom + 0.03, -depth + 0.03);
     sill(t, w, r[0] - 0.08, r[1] + 0.08, r[2]);
 }
 
@@ -160,25 +161,25 @@ static void balcony(town *t, const town_wall *w, const double r[4], double floor
 
 /* ---- shops ---- */
 
-/* A lit room behind an open front, or a bright pane, or a closed one; a sign above it. */
+/* A room behind an open front, or panes, or a closed one, which nobody lights; a sign above it. */
 static void shop(town *t, const town_wall *w, const town_facade *f, int column, const double r[4], double sign) {
     static const double levels[] = { 200, 280, 380, 500, 650, 800 };
     town_rng rng = { town_hash(f->seed ^ 0x1234567u, (uint32_t)column) };
     double kind = town_next(&rng);
-    int colour = LIGHT_WARM + town_below(&rng, 4);
+    town_room room = { .kind = NOC_WINDOW_SHOP, .often = TOWN_SHOPS_OFTEN };
+    room.colour = LIGHT_WARM + town_below(&rng, 4);
     double level = levels[town_below(&rng, NOC_COUNT(levels))];
+    town_rng number = { town_hash(f->seed ^ 0x2545f491u, (uint32_t)column) };
+    room.level = town_next(&number);
     if (kind < 0.7 && r[0] > 6 && r[1] < w->length - 6) { /* rooms keep clear of the corners */
         const double depth = 2.6, sm = 0.5 * (r[0] + r[1]), z = r[3] - 0.03;
-        recess(t, TM_SHOP, TM_SHOP, w, r, depth);
-        noc_light panel = { .kind = NOC_LIGHT_PARALLELOGRAM,
-                            .name = "shop",
-                            .group = t->windows }; /* in the ceiling, facing down */
-        town_wall_point(w, sm - 0.9, z, -depth + 0.7, panel.position);
-        for (int k = 0; k < 2; k++) {
-            panel.edge_u[k] = 1.8 * (k ? w->dir.y : w->dir.x);
-            panel.edge_v[k] = 1.0 * (k ? w->out.y : w->out.x);
-        }
-        town_light(t, &panel, colour, 4 * level);
+        reveals(t, TM_SHOP, TM_SHOP_FLOOR, w, r, depth);
+        town_wall_rect(t, TM_SHOP, w, r[0], r[1], r[2], r[3], -depth);
+        double p[3]; /* the corner of a panel in the ceiling, facing down */
+        const double u[3] = { 1.8 * w->dir.x, 1.8 * w->dir.y, 0 }, v[3] = { w->out.x, w->out.y, 0 };
+        town_wall_point(w, sm - 0.9, z, -depth + 0.7, p);
+        room.luminance = 4 * level;
+        town_pane_add(t, TM_SHOP, p, u, v, &room);
         /* something to sell: a counter and shelves */
         wall_box(t, TM_WOOD, w, r[0] + 0.3, r[1] - 0.3, r[2] + 0.5, r[2] + 0.55, -depth, -depth + 0.35, 0, 0);
         wall_box(t, TM_AWNING + (town_mat)town_below(&rng, 3), w, r[0] + 0.4, sm - 0.2, r[2] + 0.55, r[2] + 1.1, -depth,
@@ -188,14 +189,15 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
                  -depth + 0.3, 0, 0);
         wall_box(t, TM_WOOD, w, sm - 0.7, sm + 0.5, r[2], r[2] + 0.8, -1.3, -0.8, 0, 0);
     } else {
-        recess(t, TM_FRAME, TM_SHOP_DARK, w, r, 0.22);
+        reveals(t, TM_FRAME, TM_FRAME, w, r, 0.22);
+        town_wall_rect(t, TM_SHOP_DARK, w, r[0], r[1], r[2], r[3], -0.22);
         if (kind < 0.87) {
             int panes = 3;
             for (int i = 0; i < panes; i++) { /* one brightness a pane: displays, a poster, the door */
                 double a = r[0] + (r[1] - r[0]) * i / panes, b = r[0] + (r[1] - r[0]) * (i + 1) / panes;
                 double lo = town_chance(&rng, 0.35) ? r[2] + 0.7 : r[2] + 0.12;
-                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour,
-                                level * (0.3 + 0.12 * town_below(&rng, 3)), "shop");
+                room.luminance = level * (0.3 + 0.12 * town_below(&rng, 3));
+                town_wall_pane(t, TM_SHOP_DARK, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, &room);
                 if (i)
                     town_wall_rect(t, TM_FRAME, w, a - 0.05, a + 0.05, r[2], r[3], -0.17);
             }

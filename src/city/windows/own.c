@@ -104,7 +104,7 @@ static bool add_pane(const wall_facets *panes, const facet *f, const city_window
     for (uint32_t i = 0; i < f->count; i++) {
         const wall_piece *p = &panes->pieces.data[panes->by_facet.data[f->first + i]];
         city_own_pane pane = {
-            .first = (uint32_t)out->triangles.len, .whole = whole, .leads = leads && !i, .window = *shine
+            .first = (uint32_t)out->triangles.len, .whole = whole, .leads = leads && !i, .part = i > 0, .window = *shine
         };
         if (whole)
             set_rectangle(&pane.window, f);

@@ -69,11 +69,13 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
                              const noc_window_params *params, const city_cover *cover, city_windows *out);
 void city_windows_free(city_windows *w);
 
-/* Windows that a model has itself (own.c). A pane is a light of its window: a rectangle, or a triangle. */
+/* Windows that a model has itself (own.c). A pane is a light of its window: a rectangle, or a
+ * triangle of a piece of glass that is none. */
 typedef struct city_own_pane {
     uint32_t first, count; /* of city_own_windows.triangles, which show it */
     bool whole;            /* a rectangle */
     bool leads;            /* the first of its window */
+    bool part;             /* of the same glass as the one before it */
     city_window window;    /* its edges are those of the rectangle or triangle */
 } city_own_pane;
 

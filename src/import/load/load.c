@@ -141,14 +141,15 @@ static noc_status name_streets(importer *im, const input *in) {
 
 static noc_status read_builtin(importer *im, input *in) {
     double start = noc_wall_seconds();
-    size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
+    size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len, windows = im->scene->windows.len;
     const char *name = in->path + strlen(BUILTIN);
     const noc_progress *progress = &im->params->progress;
     char what[60];
     noc_snprintf(what, sizeof(what), "building %.40s", name);
     if (progress->update && !progress->update(progress->user, what, 0))
         return NOC_ERR_CANCELLED;
-    noc_status status = noc_scene_add_builtin(im->scene, name, im->params->builtin);
+    noc_status status = city_add_builtin(im->scene, name, im->params->builtin, im->params->windows != NOC_SWITCH_OFF);
+    status = status ? status : windows_of_builtin(im, in, windows);
     if (!status && !strcmp(name, "city"))
         status = name_streets(im, in);
     if (!status && !strcmp(name, "city") && im->params->traffic == NOC_SWITCH_ON)

@@ -486,6 +486,8 @@ noc_status look_read_images(importer *im);
 /* windows.c: windows on the walls of the buildings that were taken. */
 noc_status windows_check(const noc_import_params *params, noc_log *log);
 noc_status windows_add(importer *im);
+/* Lights and counts those that a built-in scene came with, whose first in the scene has that number. */
+noc_status windows_of_builtin(importer *im, input *in, size_t first);
 
 /* repeat.c: what is given twice is taken once. */
 bool same_file(const char *a, const char *b); /* whatever they are called: "a.csv", "./a.csv", a link */

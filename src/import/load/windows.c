@@ -131,13 +131,15 @@ static bool is_lit(const maker *m, const city_window *w) {
            noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
 }
 
-/* counts: as a window, and is no further pane of one. */
+/* counts: as a window, and is no further pane of one. part: of the glass of the pane before it. */
 static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind kind, const uint32_t *triangles,
-                     size_t count, bool counts) {
-    noc_pane pane = { .triangles = triangles,
-                      .triangle_count = count,
-                      .shape = { .kind = kind, .group = m->group },
-                      .window = { .level = w->level, .kind = (unsigned char)w->kind } };
+                     size_t count, bool counts, bool part) {
+    noc_pane pane = {
+        .triangles = triangles,
+        .triangle_count = count,
+        .shape = { .kind = kind, .group = m->group },
+        .window = { .level = w->level, .kind = (unsigned char)w->kind, .part = part, .often = NOC_WINDOW_OFTEN }
+    };
     memcpy(pane.shape.position, w->corner, sizeof(w->corner));
     memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
     memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
@@ -175,7 +177,7 @@ static noc_status add_mesh(maker *m, const char *id, const city_window_list *lis
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     for (size_t i = 0; i < list->len; i++) {
         const uint32_t both[2] = { 2 * (uint32_t)i, 2 * (uint32_t)i + 1 };
-        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2, true))
+        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2, true, false))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -190,7 +192,7 @@ static noc_status take_own(maker *m, const own_mesh *o, noc_window_counts *count
         counts->own += p->leads;
         counts->lit += p->leads && is_lit(m, &p->window);
         if (!add_pane(m, (int)o->mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
-                      own->triangles.data + p->first, p->count, p->leads))
+                      own->triangles.data + p->first, p->count, p->leads, p->part))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -358,4 +360,17 @@ noc_status windows_add(importer *im) {
     noc_scene_light_windows(im->scene, m.params);
     put_away(&m);
     return status;
+}
+
+noc_status windows_of_builtin(importer *im, input *in, size_t first) {
+    noc_scene *s = im->scene;
+    noc_scene_light_windows(s, &im->params->window);
+    for (size_t i = first; i < s->windows.len; i++) {
+        const float *e = s->lights.data[s->windows.data[i].light].e;
+        in->file.windows.windows++;
+        in->file.windows.lit += e[0] > 0 || e[1] > 0 || e[2] > 0;
+        if (!report_pane(im->report, (size_t)(in - im->inputs), true))
+            return noc_scene_out_of_memory(s);
+    }
+    return NOC_OK;
 }
