@@ -42,11 +42,11 @@ NOC_API noc_smoother *noc_smoother_create(noc_device *device);
 NOC_API void noc_smoother_destroy(noc_smoother *smoother);
 
 /* Takes the last complete frame of a view of the same device, alone, whether or not the view averages frames, and
- * returns what is to be shown: linear Rec.709, cd/m2, with coverage. It stays as it is until the next call with this
- * smoother. NULL params are the defaults. Each frame of the view is to be taken once, in its turn; taken again it gives
- * the same picture. Where one was left out, another view is given, or the view was reset, the smoother begins anew. A
- * change of the picture's size keeps what it knows, and needs memory; nothing else does. NULL after reporting an error:
- * there is no frame, it has not kept NOC_SMOOTH_AOVS, parameters, another device, memory. */
+ * returns what is to be shown: linear Rec.709, cd/m2, with coverage and emitters. It stays as it is until the next call
+ * with this smoother. NULL params are the defaults. Each frame of the view is to be taken once, in its turn; taken
+ * again it gives the same picture. Where one was left out, another view is given, or the view was reset, the smoother
+ * begins anew. A change of the picture's size keeps what it knows, and needs memory; nothing else does. NULL after
+ * reporting an error: there is no frame, it has not kept NOC_SMOOTH_AOVS, parameters, another device, memory. */
 NOC_API const noc_image *noc_smoother_step(noc_smoother *smoother, noc_view *view, const noc_smooth_params *params);
 /* Forgets all frames. */
 NOC_API void noc_smoother_reset(noc_smoother *smoother);

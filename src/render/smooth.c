@@ -1,6 +1,8 @@
 /* A smoother: its memory, and the order of its kernels over the rows of a frame. */
 #include "render/smooth.h"
 
+#include <string.h>
+
 struct noc_smoother {
     noc_device *device;
     const noc_view *view; /* whose frames are taken: compared, never followed */
@@ -78,9 +80,11 @@ static noc_status make_room(noc_smoother *s, int width, int height) {
         s->width = s->height = 0;
         s->scratch = noc_alloc_large((size_t)width * (size_t)height, SCRATCH_PLANES * sizeof(float));
         s->image = noc_image_create(width, height, s->device->log);
-        if (s->image)
+        if (s->image) {
             s->image->coverage = noc_alloc_large((size_t)width * (size_t)height, 4 * sizeof(float));
-        ok = s->scratch && s->image && s->image->coverage;
+            s->image->emitter = noc_alloc((size_t)width * (size_t)height);
+        }
+        ok = s->scratch && s->image && s->image->coverage && s->image->emitter;
         s->width = ok ? width : 0;
         s->height = ok ? height : 0;
     }
@@ -169,6 +173,20 @@ static noc_status check(const noc_smoother *s, const noc_view *view, const noc_s
     return NOC_OK;
 }
 
+/* As noc_view_image has it, or exposure would be metered otherwise while a picture moves: a pixel, and those around. */
+static void mark_emitters(noc_image *image, const uint32_t *what) {
+    int width = image->width, height = image->height;
+    memset(image->emitter, 0, (size_t)width * (size_t)height);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            if ((what[(size_t)y * (size_t)width + (size_t)x] & 3) != NOC_ROW_EMITTER)
+                continue;
+            for (int j = NOC_MAX(y - 1, 0); j <= NOC_MIN(y + 1, height - 1); j++)
+                for (int i = NOC_MAX(x - 1, 0); i <= NOC_MIN(x + 1, width - 1); i++)
+                    image->emitter[(size_t)j * (size_t)width + (size_t)i] = 1;
+        }
+}
+
 static void smooth(noc_smoother *s, noc_view *view, const noc_smooth_params *params) {
     smooth_step step = make_step(s, view, params);
     const smooth_rows *rows = rows_of(view->last.isa);
@@ -179,6 +197,7 @@ static void smooth(noc_smoother *s, noc_view *view, const noc_smooth_params *par
         run_rows(s, &step, (band_run){ .kernels = { rows->filter } });
     run_rows(s, &step, (band_run){ .kernels = { rows->make } });
     run_rows(s, &step, (band_run){ .kernels = { rows->show } });
+    mark_emitters(s->image, step.now.what);
     s->image->smoothed = true;
     s->last = 1 - s->last;
     s->held = true;

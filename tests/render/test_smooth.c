@@ -64,6 +64,28 @@ static void rests_on_the_mean(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Exposure is metered beside emitters, so they are told as in the picture that is not smoothed. */
+static void marks_emitters(void **state) {
+    noc_scene *s = street(60);
+    noc_camera c = along();
+    noc_render_params p = moving(NOC_METHOD_RIS);
+    p.jitter = false;
+    noc_view *v = rendered(s, &c, &p, 0, 1);
+    noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+    assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+    const noc_image *image = noc_smoother_step(smoother, v, NULL);
+    noc_image *own = noc_view_image(v);
+    check_picture(image, W, H);
+    assert_non_null(image->emitter);
+    assert_memory_equal(image->emitter, own->emitter, N);
+    assert_non_null(memchr(own->emitter, 1, N));
+    assert_non_null(memchr(own->emitter, 0, N));
+    noc_image_destroy(own);
+    noc_smoother_destroy(smoother);
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
 /* A floor that a lamp lights, which belongs to a group, and a box before it that is an instance. */
 static noc_scene *stage(int *box) {
     noc_scene *s = noc_scene_create(NULL);
@@ -231,8 +253,11 @@ static void is_in_no_figures(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rests_on_the_mean),        cmocka_unit_test(forgets_what_changed),
-        cmocka_unit_test(the_same_for_any_threads), cmocka_unit_test(refuses),
+        cmocka_unit_test(rests_on_the_mean),
+        cmocka_unit_test(marks_emitters),
+        cmocka_unit_test(forgets_what_changed),
+        cmocka_unit_test(the_same_for_any_threads),
+        cmocka_unit_test(refuses),
         cmocka_unit_test(is_in_no_figures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
