@@ -138,6 +138,10 @@ NOC_API noc_status noc_group_state_check(const char *text, noc_log *log);
 /* Linear Rec.709 of luminance 1: a black body's or daylight's at that colour temperature, K. */
 NOC_API void noc_kelvin_rgb(double kelvin, float rgb[3]);
 
+/* The colour temperature of that colour, K, however bright it is: 1000 to 15000. NaN: it is none of these colours, or
+ * black, or rgb is NULL. */
+NOC_API double noc_rgb_kelvin(const float rgb[3]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -25,3 +25,24 @@ void noc_kelvin_rgb(double kelvin, float rgb[3]) {
     for (int i = 0; i < 3 && rgb; i++)
         rgb[i] = (float)(c[i] / luminance);
 }
+
+double noc_rgb_kelvin(const float rgb[3]) {
+    double low = 1000, high = 15000;
+    float c[3];
+    if (!rgb)
+        return NAN;
+    double luminance = .2126 * rgb[0] + .7152 * rgb[1] + .0722 * rgb[2];
+    if (!(luminance > 0))
+        return NAN;
+    for (int i = 0; i < 50; i++) { /* less red, and more of the others, the hotter it is */
+        double middle = (low + high) / 2;
+        noc_kelvin_rgb(middle, c);
+        bool hotter = (rgb[1] + rgb[2]) * (double)c[0] > (c[1] + c[2]) * (double)rgb[0];
+        *(hotter ? &low : &high) = middle;
+    }
+    noc_kelvin_rgb(low, c);
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(rgb[i] / luminance - c[i]) <= 1e-3))
+            return NAN;
+    return low;
+}

@@ -107,6 +107,7 @@ static noc_camera camera;
     P(0, noc_condition_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                          \
     P(0, noc_condition_check(&(noc_condition){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                         \
     P(noc_kelvin_rgb(3000, NULL), true)                                                                                \
+    P(0, isnan(noc_rgb_kelvin(NULL)))                                                                                  \
     P(0, noc_scene_remove_light(NULL, 0) == NOC_ERR_ARGUMENT)                                                          \
     P(0, noc_scene_remove_mesh(NULL, 0) == NOC_ERR_ARGUMENT)                                                           \
     P(0, noc_scene_save(NULL, "a.noct", NULL) == NOC_ERR_ARGUMENT)                                                     \

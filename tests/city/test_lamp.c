@@ -52,6 +52,21 @@ static void test_kelvin(void **state) {
     }
 }
 
+static void test_kelvin_back(void **state) {
+    static const float none[][3] = {
+        { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 0, 1 }, { NAN, 1, 1 }, { -1, -1, -1 }
+    };
+    for (double k = 1950; k < 15000; k += 350) {
+        float rgb[3];
+        noc_kelvin_rgb(k, rgb);
+        for (int i = 0; i < 3; i++)
+            rgb[i] *= 73;
+        assert_float_equal(noc_rgb_kelvin(rgb), k, k * 1e-3);
+    }
+    for (size_t i = 0; i < NOC_COUNT(none); i++)
+        assert_true(isnan(noc_rgb_kelvin(none[i])));
+}
+
 /* What a lamp tells, by itself or by its source, is no assumption. */
 static void test_assumes(void **state) {
     geo_lamp l = lamp_at(0, 0);
@@ -418,6 +433,7 @@ static void test_no_ground(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kelvin),
+        cmocka_unit_test(test_kelvin_back),
         cmocka_unit_test(test_assumes),
         cmocka_unit_test(test_profiles),
         cmocka_unit_test(test_flux),
