@@ -2,13 +2,14 @@
 #include "viewer/ask_parts.h"
 
 #include <math.h>
+#include <nocturne/map.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST_LIGHTS = 100000, MOST_CARS = 20000, MOST_STOPS = 200000 };
-enum { SECTION_LIGHTS = 1, SECTION_CARS, SECTION_TRACKS };
-enum { LIGHT_BYTES = 24, CAR_BYTES = 16, STOP_BYTES = 12 };
+enum { SECTION_LIGHTS = 1, SECTION_CARS, SECTION_TRACKS, SECTION_BUILDINGS = 5 };
+enum { LIGHT_BYTES = 24, CAR_BYTES = 16, STOP_BYTES = 12, MOST_CELLS = 512 /* along a side of the buildings */ };
 enum { KIND_OTHER, KIND_MAPPED, KIND_INFERRED, KIND_WINDOW, KIND_CAR };
 
 /* What the map calls a light. */
@@ -125,6 +126,49 @@ static void add_tracks(const asker *a, map *m) {
     end_section(m, from, STOP_BYTES);
 }
 
+static noc_status cast_down(void *user, const noc_ray *rays, size_t count, noc_hit *hits) {
+    return noc_view_cast(user, rays, count, hits);
+}
+
+static bool goes_on(void *user, const char *what, double done) {
+    (void)what, (void)done;
+    return !ask_stopped(user);
+}
+
+static bool of_building(uint8_t cls) {
+    return cls == NOC_CLASS_WALL || cls == NOC_CLASS_ROOF || cls == NOC_CLASS_WINDOW || cls == NOC_CLASS_DOOR ||
+           cls == NOC_CLASS_INSTALLATION;
+}
+
+/* Where buildings are, as seen from above: a rectangle, its cells, and a byte of each from the north, 1: a building. */
+static void add_buildings(asker *a, map *m, const noc_scene_info *info) {
+    const double *low = info->bounds_min, *high = info->bounds_max;
+    double wide = high[0] - low[0], deep = high[1] - low[1], cell = fmax(wide, deep) / MOST_CELLS;
+    if (!(wide > 0 && deep > 0))
+        return;
+    noc_map_params p = { .min = { low[0], low[1] }, .max = { high[0], high[1] }, .from = INFINITY };
+    p.width = (int)ceil(wide / cell);
+    p.height = (int)ceil(deep / cell);
+    p.width = p.width > MOST_CELLS ? MOST_CELLS : p.width;
+    p.height = p.height > MOST_CELLS ? MOST_CELLS : p.height;
+    size_t cells = (size_t)p.width * (size_t)p.height;
+    uint8_t *cls = malloc(cells);
+    noc_progress progress = { goes_on, a };
+    if (cls && !noc_scene_map(world_scene(a->world), &p, cast_down, a->ask_view, &progress, NULL, cls, NULL)) {
+        size_t from = begin_section(m, SECTION_BUILDINGS);
+        unsigned char *at = more(m, 24 + cells);
+        for (int k = 0; at && k < 2; k++) {
+            wire_put_f32(at + 4 * k, (float)p.min[k]);
+            wire_put_f32(at + 8 + 4 * k, (float)p.max[k]);
+            wire_put_u32(at + 16 + 4 * k, (uint32_t)(k ? p.height : p.width));
+        }
+        for (size_t i = 0; at && i < cells; i++)
+            at[24 + i] = of_building(cls[i]);
+        end_section(m, from, 1);
+    }
+    free(cls);
+}
+
 void ask_lights(asker *a, const question *q) {
     noc_scene_info info;
     noc_scene_get_info(world_scene(a->world), &info);
@@ -132,6 +176,7 @@ void ask_lights(asker *a, const question *q) {
     if (!q->ask.moving) {
         add_lights(a, &m, info.light_slots);
         add_tracks(a, &m);
+        add_buildings(a, &m, &info);
     }
     add_cars(a, &m, info.cars);
     if (!m.data) {
@@ -226,6 +271,8 @@ void ask_lamp(asker *a, const question *q) {
     if (crs)
         json_object_set_new(m, "crs", crs);
     json_object_set_new(m, "lumens", ask_number(l.lumens));
+    json_object_set_new(m, "kelvin", ask_number(noc_rgb_kelvin(l.light.emission)));
+    json_object_set_new(m, "group", wire_text(world_group_name(a->world, l.light.group)));
     add_report(a, q, m);
     ask_send(a, q, m);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define FIRST_SECONDS 0.15 /* until the first answer */
 #define MOST_SECONDS 6.0   /* until the last one, where light is hard to find */
@@ -76,16 +77,22 @@ static void write_row(FILE *out, size_t rank, const char *kind, const char *name
     fprintf(out, ",%.6g,%.3g,%.6g,%.3g\n", share->value, share->error, lux->value, lux->error);
 }
 
-static char *csv_of(const noc_influence_row *rows, size_t count, const noc_influence_sum *sum) {
+/* Places are in the city's coordinate system, where it has one, as those of `nocturne influence --csv`. */
+static char *csv_of(const asker *a, const noc_influence_row *rows, size_t count, const noc_influence_sum *sum) {
     char *text = NULL;
     size_t size;
+    noc_scene_info info;
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
+    noc_scene_get_info(world_scene(a->world), &info);
     fputs("rank,kind,name,light,x,y,z,share,share_error,lux,lux_error\n", out);
     for (size_t i = 0; i < count; i++) {
         const noc_emitter *e = &rows[i].emitter;
-        write_row(out, i + 1, kind_of(e), *e->name ? e->name : e->of, (long)e->light, e->centre, &rows[i].share,
+        double place[3] = { e->centre[0], e->centre[1], e->centre[2] };
+        if (*info.given_crs && noc_scene_from_local(world_scene(a->world), NULL, place))
+            memcpy(place, e->centre, sizeof(place));
+        write_row(out, i + 1, kind_of(e), *e->name ? e->name : e->of, (long)e->light, place, &rows[i].share,
                   &rows[i].lux);
     }
     if (sum->sky.value > 0)
@@ -119,7 +126,7 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
     ask_send(a, q, m);
     if (done >= 1)
-        ask_keep(a, q->id, csv_of(rows, found, &sum));
+        ask_keep(a, q->id, csv_of(a, rows, found, &sum));
 }
 
 /* Is the greatest share known well enough? */

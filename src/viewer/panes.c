@@ -136,12 +136,13 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
     pane *to = &p->pane[which];
     noc_render_params params = look_params(&to->look, width, height);
     bool calm = to->look.smooth && !to->look.show && (double)width * height <= MOST_SMOOTHED;
-    params.aovs |= rests ? 1u << NOC_AOV_VARIANCE : calm ? NOC_SMOOTH_AOVS : 0;
+    bool varies = rests && params.accumulate; /* a mean has one */
+    params.aovs |= varies ? 1u << NOC_AOV_VARIANCE : calm && !rests ? NOC_SMOOTH_AOVS : 0;
     uint64_t change = p->change;
     noc_status status = noc_view_render(to->view, camera, &params, progress);
     if (status)
         return status;
-    to->varies = rests;
+    to->varies = varies;
     to->calm = NULL;
     if (params.aovs & NOC_SMOOTH_AOVS && !rests)
         to->calm = smooth(p, to);
@@ -193,20 +194,33 @@ static void crop(uint8_t *rgb, int width, int height, wire_head *head) {
     head->height = height;
 }
 
+static bool shows_lights(const look *l) {
+    noc_aov aov = (noc_aov)(l->show - 1);
+    return aov == NOC_AOV_INFLUENTIAL || aov == NOC_AOV_RUNNER_UP || aov == NOC_AOV_LIGHT;
+}
+
 /* Numbers in colours. */
 static noc_status draw_numbers(panes *p, int which, wire_head *head) {
     pane *of = &p->pane[which];
+    of->ev100 = NAN;
     noc_channel_params params = of->look.channel;
     params.part = NOC_CHANNEL_PICTURE;
     noc_channel *channel = noc_view_aov(of->view, (noc_aov)(of->look.show - 1));
     uint8_t *rgb = NULL;
     noc_status status =
         channel ? noc_channel_to_srgb8(channel, &params, &rgb, &head->width, &head->height, p->log) : NOC_ERR_MEMORY;
+    legend_names names;
+    if (!status && shows_lights(&of->look) && !legend_name_lights(&names, channel, world_scene(p->world)))
+        status = NOC_ERR_MEMORY;
     json_decref(of->legend);
     of->legend = status ? NULL : legend_of(channel, &params, p->log);
     noc_channel_destroy(channel);
     head->flags |= WIRE_LEGEND;
-    return status ? status : take(p, rgb, head);
+    if (status) {
+        free(rgb);
+        return status;
+    }
+    return take(p, rgb, head);
 }
 
 /* The picture of a look as sRGB in p->rgb. */
@@ -223,6 +237,7 @@ static noc_status draw(panes *p, int which, double now, wire_head *head) {
         display.auto_exposure = isnan(p->exposure);
         display.ev100 = p->exposure - display.compensation;
     }
+    from->ev100 = display.auto_exposure ? NAN : display.ev100;
     noc_status status =
         reserve(p, image->width, image->height) ? noc_image_to_srgb8(image, &display, p->rgb) : NOC_ERR_MEMORY;
     head->width = image->width;
@@ -290,6 +305,8 @@ static char *stats_of(panes *p, int which, const panes_picture *what, const wire
     json_object_set_new(m, "camera",
                         json_pack("{s:[fff],s:[fff],s:f}", "eye", c->eye[0], c->eye[1], c->eye[2], "target",
                                   c->target[0], c->target[1], c->target[2], "fov", c->fov_deg));
+    if (of->view)
+        set_number(m, "ev100", of->ev100);
     if (!of->view) {
         set_number(m, "rmse", of->compared.all.rmse);
         set_number(m, "relmse", of->compared.all.relmse);

@@ -19,6 +19,7 @@ typedef struct pane {
     uint32_t number;        /* of its newest picture */
     noc_frame_stats stats;
     noc_comparison compared; /* of a difference */
+    double ev100;            /* of its newest picture; NaN: that is of numbers */
     json_t *legend;          /* of its newest picture, where that is of numbers; NULL: none */
 } pane;
 

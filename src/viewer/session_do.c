@@ -126,6 +126,7 @@ void session_do(session *s, const wire_message *m) {
     case WIRE_HELLO:
         s->width = m->hello.width;
         s->height = m->hello.height;
+        s->told_less = true; /* the command line has the size */
         changed(s);
         break;
     case WIRE_INPUT: do_input(s, &m->input); break;

@@ -38,8 +38,10 @@ static bool render(session *s, int which, int level, bool rests) {
     pace_size(level, w, h, &w, &h);
     noc_progress progress = { rests ? goes_on : goes_on_moving, s };
     noc_status status = panes_render(&s->panes, which, &s->mover.camera, w, h, rests, &progress);
-    if (status && status != NOC_ERR_CANCELLED)
+    if (status && status != NOC_ERR_CANCELLED) {
         session_note(s, "error", noc_status_text(status));
+        s->rested = true; /* until something changes: the next one would fail, too */
+    }
     return !status;
 }
 

@@ -70,6 +70,7 @@ typedef struct world_made {
     bool no_traffic; /* the cars are out of sight */
 } world_made;
 /* "0.5,2200K" */
+const char *world_group_name(const viewer_world *world, int index); /* of the scene's group; "": it has none */
 void world_group_text(const world_group *group, char *text, size_t size);
 /* false: no memory. */
 bool world_get_made(viewer_world *world, world_made *made);

@@ -121,6 +121,13 @@ static noc_status begin_groups(viewer_world *w) {
     return NOC_OK;
 }
 
+const char *world_group_name(const viewer_world *w, int index) {
+    for (size_t i = 0; i < w->group_count; i++)
+        if (w->groups[i].index == index)
+            return w->groups[i].is.name;
+    return "";
+}
+
 static bool set_group(viewer_world *w, const char *name, const char *value, char *why, size_t size) {
     viewer_ear ear = { why, size };
     for (size_t i = 0; i < w->group_count; i++) {
@@ -395,8 +402,7 @@ static json_t *idle_of(const viewer_world *w) {
     for (int i = 0; i < WORLD_RAINED; i++)
         rained = rained || w->classes[world_rained[i]].there;
     if (!w->info.windows)
-        idle_if(idle, windows, 3,
-                "no windows were made on walls; those of the built-in city are chosen when it is loaded (--city-lit)");
+        idle_if(idle, windows, 3, "no windows were made: no wall has any, or --no-windows was said");
     if (!w->info.cars)
         idle_if(idle, cars, 4,
                 "there are no cars; they are chosen when a city is loaded: tracks among the inputs, or --traffic");

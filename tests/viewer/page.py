@@ -166,6 +166,15 @@ class Tests:
         page.wait(f"viewer.state.panes[0].values.show === '{names[0]}'")
         page.wait("document.getElementById('legend').hidden")
 
+    def test_rows_show_that_there_is_more(self):
+        page = self.page
+        has = "document.getElementById('modes').classList.contains('more-%s')"
+        page.evaluate("(document.getElementById('modes').scrollLeft = 0, 0)")
+        page.wait(f"{has % 'after'} && !{has % 'before'}")
+        page.evaluate("(document.getElementById('modes').scrollLeft = 1e6, 0)")
+        page.wait(f"!{has % 'after'} && {has % 'before'}")
+        page.evaluate("(document.getElementById('modes').scrollLeft = 0, 0)")
+
     def test_has_legends(self):
         page = self.page
         page.evaluate("document.querySelector('#modes button[data-name=depth]').click()")
@@ -280,6 +289,31 @@ class Tests:
         page.evaluate("viewer.set('tonemap', 'filmic')")
         blur(page)
         page.key('u')
+
+    def test_reloads(self):
+        other = opened(self.machine, self.served.link)
+        other.evaluate("viewer.set('method', 'is'); viewer.goTo('aerial')")
+        other.evaluate("viewer.connection.send('layout', { name: 'divider' })")
+        other.wait("viewer.state.layout === 'divider' && viewer.state.panes[1].values.method === 'is'")
+        other.evaluate("viewer.set('show', 'depth', 1); viewer.set('show-scale', 'linear', 1)")
+        other.evaluate("viewer.set('show-range', '0,50', 1)")
+        other.wait("viewer.state.panes[1].values['show-range'] === '0,50'")
+        self.machine.listen(2)  # the flight
+        seen = camera(other)
+        other.evaluate('location.reload()')
+        other.wait("globalThis.viewer?.state?.layout === 'divider'")
+        other.wait("viewer.state.panes[1]?.values['show-range'] === '0,50'")
+        values = state(other, 'panes[1].values')
+        assert (values['show'], values['show-scale'], values['method']) == ('depth', 'linear', 'is'), values
+        other.wait(f"viewer.camera && Math.hypot(...viewer.camera.eye.map((x, i) => x - {seen['eye']}[i])) < 0.5")
+        other.evaluate("viewer.edit(0)")
+        other.wait("viewer.ev100 !== null")
+        found = other.evaluate('viewer.ev100')
+        choose(other, 'exposure', 'off')
+        other.wait("viewer.state.panes[0].values.exposure !== 'auto'")
+        assert abs(float(state(other, 'panes[0].values.exposure')) - found) < 0.5, found
+        assert not other.errors, other.errors
+        other.close()
 
     def test_bookmarks(self):
         page = self.page

@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -99,6 +100,18 @@ def test_rest_is_whole_exact_and_ends(p):
     before = p.cpu()
     time.sleep(2)
     assert p.cpu() - before < 0.1, "it renders at rest"
+    c.close()
+
+
+def test_rest_without_a_mean(p):
+    """Frames that are not accumulated have no variance, and come all the same."""
+    c = enter(p, 160, 90)
+    c.say("set", name="accumulate", value="off")
+    said(c, "state", lambda m: m["panes"][0]["values"]["accumulate"] in ("off", "false"))
+    for _ in range(3):
+        picture = c.wait_for(lambda m: isinstance(m, dict) and m["t"] == "note" or
+                             isinstance(m, Picture) and not m.moving and m.width == 160)
+        assert isinstance(picture, Picture) and picture.frames == 1 and picture.error != picture.error, picture
     c.close()
 
 
@@ -231,6 +244,7 @@ def test_who_lights_this(p):
     assert named == sorted(named, reverse=True) and len(named) > 1
     lamp = ask(c, "lamp", id=2, light=answer["rows"][0]["light"])
     assert near(lamp["place"], answer["rows"][0]["place"], 0.01) and lamp["lumens"] > 0
+    assert lamp["group"] == "lamps" and 1800 < lamp["kelvin"] < 7000, lamp
     assert ask(c, "region", id=3, pane=0, rect=[0.4, 0.8, 0.6, 0.95])["lux"] > 0
     c.say("save", id=9, what="csv", of=1)
     file = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2)
@@ -243,6 +257,30 @@ def test_who_lights_this(p):
     lights = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 3)
     count = int.from_bytes(lights.body[4:8], "little")
     assert lights.number == 5 and count > 10 and len(lights.body) >= 8 + 24 * count
+    at, record, sections = 0, {1: 24, 2: 16, 3: 12, 5: 1}, {}
+    while at < len(lights.body):
+        kind, count = struct.unpack_from("<II", lights.body, at)
+        sections[kind] = lights.body[at + 8:at + 8 + record[kind] * count]
+        at += 8 + record[kind] * count
+    west, south, east, north, width, height = struct.unpack_from("<4f2I", sections[5])
+    cells = sections[5][24:]
+    assert west < east and south < north and 0 < width <= 512 and 0 < height <= 512 and len(cells) == width * height
+    assert set(cells) == {0, 1} and 0.1 < sum(cells) / len(cells) < 0.9, sum(cells) / len(cells)
+    c.close()
+
+
+def test_lights_have_their_names_in_legends(p):
+    c = enter(p)
+    for number, mode in enumerate(("influential", "runner-up", "light")):
+        c.say("set", pane=0, name="show", value=mode)
+        said(c, "state", lambda m: m["panes"][0]["values"]["show"] == mode)
+        labels = said(c, "stats", lambda m: m.get("legend") and m["legend"].get("labels"))["legend"]["labels"]
+        assert 0 < len(labels) <= 12, labels
+        assert len({label["number"] for label in labels}) == len(labels)
+        for label in labels[:3]:
+            lamp = ask(c, "lamp", id=50 + number, light=label["number"])
+            assert label["text"] != str(label["number"]) and label["colour"][0] == "#", label
+            assert lamp["name"][:20] in label["text"], (lamp["name"], label)
     c.close()
 
 

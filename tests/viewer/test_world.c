@@ -95,6 +95,28 @@ static void edits_are_what_a_load_makes(void **state) {
     end_city(&c);
 }
 
+/* The windows of the built-in city, too, and they are those that a load makes. */
+static void windows_of_the_builtin_city(void **state) {
+    state_city c;
+    set_city(&c, true);
+    start_city(&c);
+    char before[NOC_CONTENT_KEY], now[NOC_CONTENT_KEY], loaded[NOC_CONTENT_KEY];
+    key_of(c.world, before);
+    for (size_t i = 0; i < 3; i++) {
+        noc_import_params p = c.import;
+        say(&p, i, NULL);
+        loaded_key(&c, &p, loaded);
+        set_world(&c, edits[i].name, edits[i].value);
+        key_of(c.world, now);
+        assert_string_equal(now, loaded);
+        assert_string_not_equal(now, before);
+        set_world(&c, edits[i].name, edits[i].back);
+        key_of(c.world, now);
+        assert_string_equal(now, before);
+    }
+    end_city(&c);
+}
+
 /* Rain over a material that was set, and a load that is wet from the beginning. */
 static void rain_over_materials(void **state) {
     state_city c;
@@ -216,7 +238,7 @@ static void the_schema_is_whole(void **state) {
             if (!world_set(c.world, name, value, why, sizeof(why)))
                 fail_msg("%s %s: %s", name, value, why);
         }
-        assert_true(!json_object_get(json_object_get(told, "idle"), "hour") == !builtin);
+        assert_null(json_object_get(json_object_get(told, "idle"), "hour"));
         assert_true(!json_object_get(json_object_get(told, "idle"), "traffic") == !builtin);
         json_decref(schema);
         json_decref(told);
@@ -290,9 +312,13 @@ static void loads_that_come_to_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edits_are_what_a_load_makes), cmocka_unit_test(rain_over_materials),
-        cmocka_unit_test(traffic_goes_and_drives),     cmocka_unit_test(what_is_wrong_is_told),
-        cmocka_unit_test(the_schema_is_whole),         cmocka_unit_test(edits_come_while_frames_are_rendered),
+        cmocka_unit_test(edits_are_what_a_load_makes),
+        cmocka_unit_test(rain_over_materials),
+        cmocka_unit_test(windows_of_the_builtin_city),
+        cmocka_unit_test(traffic_goes_and_drives),
+        cmocka_unit_test(what_is_wrong_is_told),
+        cmocka_unit_test(the_schema_is_whole),
+        cmocka_unit_test(edits_come_while_frames_are_rendered),
         cmocka_unit_test(loads_that_come_to_nothing),
     };
     return make_folder() ? cmocka_run_group_tests(tests, NULL, NULL) : 1;

@@ -64,6 +64,11 @@ export class App extends Emitter {
         return this.schema.modes.find((one) => one.name === show) ?? { name: show, text: '', unit: '' };
     }
 
+    // EV100 of the newest picture, of the pane that is edited; null where it shows numbers.
+    get ev100() {
+        return this.stats[Math.max(this.editing, 0)]?.ev100 ?? null;
+    }
+
     // The camera of the picture that is seen.
     get camera() {
         return this.stats.find((one) => one?.camera)?.camera ?? this.state?.camera ?? null;

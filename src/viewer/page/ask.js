@@ -166,7 +166,7 @@ export class Ask {
 
     #where(answer) {
         return [
-            [answer.crs?.name ?? 'CRS', answer.crs?.place && places(answer.crs.place)],
+            [(answer.crs?.name ?? 'CRS').replace(/ \(.*/, ''), answer.crs?.place && places(answer.crs.place)],
             ['scene', answer.place && `${places(answer.place)} m`],
         ];
     }
@@ -207,6 +207,9 @@ export class Ask {
                 ['flux', answer.lumens !== undefined && `${number(answer.lumens)} lm`],
                 ['colour', kelvin],
                 ['group', answer.group],
+                ['street', answer.street],
+                ['profile', answer.profile],
+                ['power', answer.watts && `${number(answer.watts)} W`],
                 ['file', answer.file],
                 ...Object.entries(answer.tags ?? {}),
             ]),

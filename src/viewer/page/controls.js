@@ -42,10 +42,15 @@ function numeric(option, change, labels) {
         ...labels,
         'aria-label': `${option.name}, slider`,
     });
+    const slide = () => {
+        slider.value = map.to(Number(box.value)) * STEPS;
+        slider.setAttribute('aria-valuetext', `${box.value} ${option.unit ?? ''}`);
+    };
     box.addEventListener('change', () => {
         if (box.value === '' || !Number.isFinite(box.valueAsNumber)) return;
         const number = clamp(box.valueAsNumber, option.min ?? -Infinity, option.max ?? Infinity);
         box.value = option.kind === 'int' ? Math.round(number) : number;
+        slide();
         change(box.value);
     });
     slider.addEventListener('input', () => {
@@ -55,8 +60,7 @@ function numeric(option, change, labels) {
     });
     const show = (text) => {
         box.value = Number.isFinite(Number(text)) ? Number(Number(text).toPrecision(6)) : '';
-        slider.value = map.to(Number(text)) * STEPS;
-        slider.setAttribute('aria-valuetext', `${box.value} ${option.unit ?? ''}`);
+        slide();
     };
     const unit = option.unit ? el('span', { class: 'unit', text: option.unit }) : null;
     return { parts: [slider, el('span', { class: 'number' }, box, unit)], show, wide: true };
@@ -89,11 +93,11 @@ function colour(option, change, labels) {
     return { parts: [box], show: (value) => (box.value = value || '#808080') };
 }
 
-// A number, or auto, which the program finds: exposure.
+// A number, or auto, which the program finds: exposure. By hand it begins at what was found.
 function automatic(option, change, labels) {
     const row = { ...option, kind: 'real', min: -10, max: 20, value: '3' };
     const numbers = numeric(row, (value) => change(value), { 'aria-label': `${option.name}, by hand` });
-    const told = () => change(box.checked ? 'auto' : '3');
+    const told = () => change(box.checked ? 'auto' : String(Number((option.found() ?? 3).toFixed(2))));
     const box = el('input', { type: 'checkbox', role: 'switch', ...labels, on: { change: told } });
     const show = (value) => {
         box.checked = value === 'auto';

@@ -42,6 +42,15 @@ export class Choice {
         this.root = root;
         this.choose = choose;
         root.addEventListener('keydown', (event) => this.#key(event));
+        root.addEventListener('scroll', () => this.#fade());
+        new ResizeObserver(() => this.#fade()).observe(root);
+    }
+
+    // A row that scrolls shows at which end there is more of it.
+    #fade() {
+        const { scrollLeft, clientWidth, scrollWidth, classList } = this.root;
+        classList.toggle('more-before', scrollLeft > 1);
+        classList.toggle('more-after', scrollLeft + clientWidth < scrollWidth - 1);
     }
 
     // items: { name, text, title }
@@ -55,6 +64,7 @@ export class Choice {
             this.root.append(one);
         }
         this.set(this.#name);
+        this.#fade();
     }
 
     get names() {

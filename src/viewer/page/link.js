@@ -40,21 +40,35 @@ export function read(hash) {
     }
 }
 
+// The mode comes last: a look is refused whose method cannot show it. The ends of its bar come behind its scale.
+const MODE = ['show', 'show-scale', 'show-range', 'isolines'];
+
+function restoreLook(app, pane, own) {
+    const { look } = app.schema;
+    const now = app.state?.panes?.[pane]?.values;
+    const same_preset = (own.preset ?? app.option('preset')?.value) === now?.preset;
+    const say = (option) => {
+        const value = own[option.name] ?? option.value;
+        const known = now?.[option.name];
+        if (own[option.name] !== undefined || !same_preset || !same(option, known)) app.set(option.name, value, pane);
+    };
+    if ((now?.show ?? 'picture') !== 'picture') app.set('show', 'picture', pane);
+    const others = look.filter(({ name }) => name !== 'preset' && !MODE.includes(name));
+    for (const option of [...look.filter(({ name }) => name === 'preset'), ...others]) say(option);
+    for (const name of MODE) if (own[name] !== undefined) app.set(name, own[name], pane);
+}
+
 // world: the settings of all clients, too; a link restores them, a reconnected client does not.
 export function restore(app, view, world) {
     const { connection, schema } = app;
-    const text = (values, options) =>
-        Object.entries(values ?? {}).filter(([name]) => options.some((one) => one.name === name));
     if (view.layout && view.layout !== app.state?.layout) connection.send('layout', { name: view.layout });
-    if (view.navigate) connection.send('navigate', view.navigate);
     if (view.camera) app.goTo(view.camera);
-    (view.panes ?? []).forEach((values, pane) => {
-        const own = Object.fromEntries(text(values, schema.look));
-        for (const option of schema.look) {
-            const now = app.state?.panes?.[pane]?.values?.[option.name];
-            if (own[option.name] !== undefined) app.set(option.name, own[option.name], pane);
-            else if (now !== undefined && !same(option, now)) app.set(option.name, option.value, pane);
-        }
-    });
-    if (world) for (const [name, value] of text(view.world, schema.world)) app.setWorld(name, value);
+    if (view.navigate) connection.send('navigate', view.navigate); // there: here may be no place to stand
+    (view.panes ?? []).forEach((values, pane) => restoreLook(app, pane, values ?? {}));
+    if (!world) return;
+    for (const option of schema.world) {
+        const value = view.world?.[option.name] ?? option.value;
+        const now = app.state?.world?.values?.[option.name];
+        if (String(value) !== String(now) && !same({ ...option, value }, now)) app.setWorld(option.name, value);
+    }
 }

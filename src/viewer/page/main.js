@@ -82,10 +82,29 @@ function fromLink() {
     return true;
 }
 app.on('ready', () => {
-    if (before) restore(app, before, false);
+    const kept = before ?? reloaded();
+    if (kept) restore(app, kept, false);
     else fromLink();
     before = null;
 });
+// A page that is loaded again is as it was, as long as its link is the same.
+const KEPT = 'nocturne view';
+window.addEventListener('pagehide', () => {
+    try {
+        if (app.state) sessionStorage.setItem(KEPT, JSON.stringify({ hash: location.hash, view: remember(app) }));
+    } catch {
+        // the browser keeps nothing: the view begins anew
+    }
+});
+function reloaded() {
+    try {
+        const kept = JSON.parse(sessionStorage.getItem(KEPT) ?? 'null');
+        sessionStorage.removeItem(KEPT);
+        return kept?.hash === location.hash ? kept.view : null;
+    } catch {
+        return null;
+    }
+}
 window.addEventListener('hashchange', () => app.state && fromLink());
 document.addEventListener('visibilitychange', () => connection.send('watch', { on: !document.hidden }));
 
@@ -97,6 +116,7 @@ const ACTS = [
     ['g', 'G', 'go to what is under the pointer', () => app.move('jump', input.target())],
     ['n', 'N', 'next way of moving', () => connection.send('navigate', { mode: next(moving) })],
     ['y', 'Y', 'next layout', () => layouts.set(next(layouts.choice))],
+    ['z', 'Z', 'headlight: the city without its lights, and back', () => headlight()],
     ['v', 'V', 'the mouse looks, until Escape', () => input.lock()],
     ['r', 'R', 'rectangle in the picture', () => ask.rectangle()],
     ['h', 'H', 'hide all but the picture', () => document.body.classList.toggle('bare')],
@@ -115,6 +135,14 @@ const told = [
     ['Escape', 'close, let go'],
 ];
 const showHelp = () => help($('help'), told);
+
+// To the method that shows surfaces alone, and back to the one before.
+let lit = 'ris';
+function headlight() {
+    const method = app.values().method;
+    if (method !== 'headlight') lit = method;
+    app.set('method', method === 'headlight' ? lit : 'headlight');
+}
 
 function fullScreen() {
     if (document.fullscreenElement) document.exitFullscreen();

@@ -5,10 +5,10 @@ import { axes } from './camera.js';
 // A binary message of kind 3 as lists; moving: of cars alone.
 export function readMap(body, moving) {
     const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
-    const found = moving ? { cars: [] } : { lights: [], cars: [], tracks: [], outlines: [] };
+    const found = moving ? { cars: [] } : { lights: [], cars: [], tracks: [], buildings: null };
     const f32 = (at) => view.getFloat32(at, true);
     const u32 = (at) => view.getUint32(at, true);
-    const size = { 1: 24, 2: 16, 3: 12, 4: 12 };
+    const size = { 1: 24, 2: 16, 3: 12, 5: 1 };
     let at = 0;
     while (at + 8 <= body.byteLength) {
         const kind = u32(at),
@@ -17,6 +17,11 @@ export function readMap(body, moving) {
         if (!size[kind] || at + count * size[kind] > body.byteLength) break;
         if (moving && kind !== 2) {
             at += count * size[kind];
+            continue;
+        }
+        if (kind === 5) {
+            found.buildings = readBuildings(view, at);
+            at += count;
             continue;
         }
         for (let i = 0; i < count; i++, at += size[kind]) {
@@ -32,22 +37,44 @@ export function readMap(body, moving) {
             } else if (kind === 2) {
                 found.cars.push({ place: [f32(at), f32(at + 4), f32(at + 8)], heading: f32(at + 12) });
             } else {
-                const lines = kind === 3 ? found.tracks : found.outlines;
                 const line = u32(at + 8);
-                if (!lines.length || lines.at(-1).line !== line) lines.push({ line, points: [] });
-                lines.at(-1).points.push([f32(at), f32(at + 4)]);
+                if (found.tracks.at(-1)?.line !== line) found.tracks.push({ line, points: [] });
+                found.tracks.at(-1).points.push([f32(at), f32(at + 4)]);
             }
         }
     }
     return found;
 }
 
+// Where buildings are: corners in metres, and a picture of one pixel a cell.
+function readBuildings(view, at) {
+    const [x0, y0, x1, y1] = [0, 4, 8, 12].map((i) => view.getFloat32(at + i, true));
+    const width = view.getUint32(at + 16, true),
+        height = view.getUint32(at + 20, true);
+    const picture = document.createElement('canvas');
+    picture.width = width;
+    picture.height = height;
+    const pixels = new ImageData(width, height);
+    for (let i = 0; i < width * height; i++)
+        if (view.getUint8(at + 24 + i)) pixels.data.set([0x2b, 0x2f, 0x37, 255], 4 * i);
+    picture.getContext('2d').putImageData(pixels, 0, 0);
+    return { low: [x0, y0], high: [x1, y1], picture };
+}
+
+function buildings(map, context) {
+    const found = map.data.buildings;
+    if (!found) return;
+    const [x0, y1] = map.to(found.low),
+        [x1, y0] = map.to(found.high);
+    context.drawImage(found.picture, x0, y0, x1 - x0, y1 - y0);
+}
+
 export function drawMap(map, context, width, height) {
     context.fillStyle = '#0b0e14';
     context.fillRect(0, 0, width, height);
     grid(map, context, width, height);
-    lines(map, context, map.data.outlines, '#39424f', true);
-    lines(map, context, map.data.tracks, '#2f5d62', false);
+    buildings(map, context);
+    lines(map, context, map.data.tracks, '#2f5d62');
     lights(map, context, width, height);
     cars(map, context);
     regions(map, context);
@@ -77,14 +104,12 @@ function grid(map, context, width, height) {
     context.stroke();
 }
 
-function lines(map, context, all, colour, closed) {
+function lines(map, context, all, colour) {
     context.strokeStyle = colour;
     context.lineWidth = 1;
     context.beginPath();
-    for (const { points } of all) {
+    for (const { points } of all)
         points.forEach((point, i) => context[i ? 'lineTo' : 'moveTo'](...map.to(point)));
-        if (closed) context.closePath();
-    }
     context.stroke();
 }
 

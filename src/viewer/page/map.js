@@ -6,7 +6,7 @@ import { drawMap, readMap } from './map-draw.js';
 const AGAIN = 1000; // ms between two looks at cars that move
 
 export class CityMap {
-    data = { lights: [], cars: [], tracks: [], outlines: [] };
+    data = { lights: [], cars: [], tracks: [], buildings: null };
     centre = [0, 0];
     scale = 1; // CSS pixels a metre
     drawing = null; // rectangle or polygon that is being drawn: { kind, points, done }

@@ -2,7 +2,10 @@
 import { el, Choice, button, number, clamp, typing } from './dom.js';
 
 // What is looked at most comes first, the rest as the program has it.
-const FIRST = ['picture', 'luminance', 'illuminance', 'influential', 'share', 'runner-up', 'group', 'placed', 'lights'];
+const FIRST = [
+    ...['picture', 'luminance', 'illuminance', 'influential', 'influential-share', 'runner-up', 'runner-up-share'],
+    ...['group', 'placed', 'lights'],
+];
 const order = (modes) => {
     const rank = ({ name }) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
     return [...modes].sort((a, b) => rank(a) - rank(b));

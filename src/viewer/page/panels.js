@@ -173,7 +173,8 @@ export class Settings {
         this.#controls.clear();
         this.#sections = [...groups].map(([name, options]) => {
             const controls = options.map(([option, set]) => {
-                const control = new Control(option, (value) => set(option.name, value));
+                const found = { ...option, found: () => this.app.ev100 };
+                const control = new Control(found, (value) => set(option.name, value));
                 this.#controls.set(option.name, control);
                 return control;
             });
@@ -182,13 +183,33 @@ export class Settings {
                 'details',
                 { open: open.has(name) },
                 el('summary', {}, name, mark),
-                ...controls.map((one) => one.root),
+                ...this.#byClass(controls),
             );
             return { name, root, controls, mark };
         });
         this.list.replaceChildren(...this.#sections.map(({ root }) => root));
         this.#offer();
         this.#filter();
+    }
+
+    // Rows of a section; those of materials once more by class, material.CLASS.FIELD.
+    #byClass(controls) {
+        const rows = [],
+            classes = new Map();
+        for (const one of controls) {
+            const [kind, name, field] = one.option.name.split('.');
+            if (kind !== 'material' || !field) {
+                rows.push(one.root);
+                continue;
+            }
+            if (!classes.has(name)) {
+                const root = el('details', { class: 'of-class' }, el('summary', { text: name }));
+                classes.set(name, root);
+                rows.push(root);
+            }
+            classes.get(name).append(one.root);
+        }
+        return rows;
     }
 
     #offer() {
@@ -248,6 +269,10 @@ export class Settings {
                 found += hit;
             }
             root.hidden = !found;
+            for (const part of root.querySelectorAll('.of-class')) {
+                part.hidden = !part.querySelector('.control:not([hidden])');
+                if (words.length) part.open = true;
+            }
             any ||= found > 0;
             if (words.length && found) root.open = true;
         }
