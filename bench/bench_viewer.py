@@ -163,36 +163,35 @@ def crowd(program, count, width, height):
 
 
 def long(program, seconds, width, height):
-    """Inputs as they are shown, edits, layouts, questions and new connections; memory at the start, each ten minutes,
-    and at the end, with the client and after it."""
-    empty, i = settle(program), 0
+    """Inputs as they are shown, edits, layouts, questions and new connections; memory in each tenth of that time, and
+    after the client has left."""
+    empty, i, every = settle(program), 0, seconds / 10
     client, start = begin(program, width, height), time.monotonic()
-    told, most, next_at = [(0, program.memory())], 0, 600
-    while time.monotonic() - start < seconds:
-        i += 1
-        move(client, turn=[0.01, 0], seconds=0.05, keys=["forward" if i % 40 < 20 else "back"])
-        client.wait_for(lambda m, n=client.n: is_picture(m) and m.input >= n, timeout=300)
-        if i % 20 == 10:
-            client.say("world", name="window-lit", value="%.1f" % (0.1 + 0.1 * (i // 20 % 9)))
-        if i % 50 == 25:
-            client.say("set", name="method", value=("restir", "ris", "is")[i // 50 % 3])
-        if i % 100 == 50:
-            client.say("ask", id=i, what="pixel", pane=0, x=0.5, y=0.9)
-        if i % 200 == 199:
-            client.say("layout", name=("divider", "methods", "difference", "single")[i // 200 % 4])
-        if i % 250 == 249:
-            client.close()
-            client = begin(program, width, height)
-        most = max(most, program.memory())
-        if time.monotonic() - start > next_at:
-            told.append((next_at / 60, program.memory()))
-            print("  %.0f min: %.0f MB" % (next_at / 60, 1e-6 * program.memory()), flush=True)
-            next_at += 600
-    told.append(((time.monotonic() - start) / 60, program.memory()))
+    told = []
+    for tenth in range(10):
+        found = []
+        while time.monotonic() - start < (tenth + 1) * every:
+            i += 1
+            move(client, turn=[0.01, 0], seconds=0.05, keys=["forward" if i % 40 < 20 else "back"])
+            client.wait_for(lambda m, n=client.n: is_picture(m) and m.input >= n, timeout=300)
+            if i % 20 == 10:
+                client.say("world", name="window-lit", value="%.1f" % (0.1 + 0.1 * (i // 20 % 9)))
+            if i % 50 == 25:
+                client.say("set", name="method", value=("restir", "ris", "is")[i // 50 % 3])
+            if i % 100 == 50:
+                client.say("ask", id=i, what="pixel", pane=0, x=0.5, y=0.9)
+            if i % 200 == 199:
+                client.say("layout", name=("divider", "methods", "difference", "single")[i // 200 % 4])
+            if i % 250 == 249:
+                client.close()
+                client = begin(program, width, height)
+            found.append(program.memory())
+        told.append((statistics.median(found), max(found)))
+        print("  until %.1f min, %d inputs: %.0f MB, at most %.0f MB"
+              % ((tenth + 1) * every / 60, i, 1e-6 * told[-1][0], 1e-6 * told[-1][1]), flush=True)
     client.close()
-    print("  %d inputs: memory without clients %.0f MB, %s, at most %.0f MB, after the client has left %.0f MB"
-          % (i, 1e-6 * empty, ", ".join("after %.0f min %.0f MB" % (t, 1e-6 * b) for t, b in told), 1e-6 * most,
-             1e-6 * settle(program)))
+    print("  memory without clients %.0f MB, after the client has left %.0f MB"
+          % (1e-6 * empty, 1e-6 * settle(program)))
 
 
 def main():

@@ -67,8 +67,9 @@ class Program:
     def alive(self):
         return self.process.poll() is None
 
-    def end(self, number=signal.SIGINT, wait=20):
-        """Its exit status, and what it said on stderr."""
+    def end(self, number=signal.SIGINT, wait=180):
+        """Its exit status, and what it said on stderr. Sanitizers on a busy machine end slowly: what does not end in that
+        time hangs."""
         if self.alive():
             self.process.send_signal(number)
         try:
