@@ -18,7 +18,7 @@ typedef struct legend_names {
  * must outlive the channel. false: no memory. */
 bool legend_name_lights(legend_names *names, noc_channel *channel, const noc_scene *scene);
 
-/* `legend` of stats, as docs/viewer.md has it. NULL: no memory, or what the params say cannot be. */
+/* `legend` of stats, as docs/viewer-protocol.md has it. NULL: no memory, or what the params say cannot be. */
 json_t *legend_of(const noc_channel *channel, const noc_channel_params *params, noc_log *log);
 
 #endif

@@ -20,8 +20,8 @@ typedef struct look {
 /* What a viewer's looks begin with. */
 look look_default(const viewer_source *source);
 
-/* Of all looks: options in the order in which they are shown, each as docs/viewer.md has it, with the value of `begin`
- * as its default. NULL: no memory. Modes: of the choices of show. */
+/* Of all looks: options in the order in which they are shown, each as docs/viewer-protocol.md has it, with the value of
+ * `begin` as its default. NULL: no memory. Modes: of the choices of show. */
 json_t *look_schema(const look *begin);
 json_t *look_modes(void);
 /* Name to text of all options; and name to reason of those that change no picture as the others are. */

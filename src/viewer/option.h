@@ -18,7 +18,7 @@ bool viewer_among(const char *name, const char *const *names, size_t count);
 
 /* noc_option_set with words for what is wrong. */
 bool viewer_option_set(const noc_option *o, void *params, const char *value, char *why, size_t size);
-/* As docs/viewer.md has an option; params hold its default. */
+/* As docs/viewer-protocol.md has an option; params hold its default. */
 json_t *viewer_option_json(const noc_option *o, const void *params);
 
 /* Latin-1 as UTF-8. */

@@ -1,5 +1,5 @@
 /* viewer: the interactive viewer that `nocturne view` serves to browsers. A part of the program, on the public headers
- * alone; cli/view.c calls it. docs/viewer.md has the wire. */
+ * alone; cli/view.c calls it. docs/viewer-protocol.md has the wire. */
 #ifndef NOC_VIEWER_H
 #define NOC_VIEWER_H
 

@@ -1,5 +1,5 @@
-/* wire: messages from text to structs, and back. The only reader of what strangers send; docs/viewer.md has the
- * messages. */
+/* wire: messages from text to structs, and back. The only reader of what strangers send; docs/viewer-protocol.md has
+ * the messages. */
 #ifndef NOC_VIEWER_WIRE_H
 #define NOC_VIEWER_WIRE_H
 

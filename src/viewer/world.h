@@ -26,7 +26,7 @@ noc_scene *world_scene(viewer_world *world);
 noc_device *world_device(viewer_world *world);
 const noc_report *world_report(viewer_world *world);
 
-/* What can be set (docs/viewer.md): a list of options; and an object of `values` and `idle`. */
+/* What can be set (docs/viewer-protocol.md): a list of options; and an object of `values` and `idle`. */
 json_t *world_schema(viewer_world *world);
 json_t *world_state(viewer_world *world);
 /* Sets an option, which the next frame shows. false, with why: nothing has changed. */

@@ -12,8 +12,8 @@ cat >spec.json <<'SPEC'
 }
 SPEC
 
-# rows FOLDER [FRAMES]: the table without times and memory (Embree's blocks are of the threads that build), sorted; fails
-# where a row has not as many fields as the header
+# rows FOLDER [FRAMES]: the table without times and memory (Embree's blocks are of the threads that build), sorted;
+# fails where a row has not as many fields as the header
 rows() {
     python3 -c '
 import csv, sys

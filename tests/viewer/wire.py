@@ -68,8 +68,8 @@ class Program:
         return self.process.poll() is None
 
     def end(self, number=signal.SIGINT, wait=180):
-        """Its exit status, and what it said on stderr. Sanitizers on a busy machine end slowly: what does not end in that
-        time hangs."""
+        """Its exit status, and what it said on stderr. Sanitizers on a busy machine end slowly: what does not end
+        in that time hangs."""
         if self.alive():
             self.process.send_signal(number)
         try:

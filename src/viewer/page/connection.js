@@ -1,5 +1,5 @@
-// connection.js: the WebSocket: docs/viewer.md has the messages. It comes back by itself when the program restarts or
-// the tunnel breaks.
+// connection.js: the WebSocket; docs/viewer-protocol.md has its messages. It comes back by itself when the program
+// restarts or the tunnel breaks.
 import { Emitter } from './dom.js';
 
 const HEAD = 32;
