@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The viewer's page in Chromium, as hands use it: what they do is seen in the picture, and the console is silent."""
 import json
+import math
 import sys
 
 import browser
@@ -17,6 +18,12 @@ LOOK = '''(() => {
     const context = small.getContext('2d');
     context.drawImage(document.querySelectorAll('.picture')[%d], 0, 0, 24, 14);
     return [...context.getImageData(0, 0, 24, 14).data].filter((_, i) => i %% 4 < 3);
+})()'''
+
+
+PICTURE = '''(() => {
+    const box = document.querySelector('.picture').getBoundingClientRect();
+    return [box.left, box.top, box.width, box.height];
 })()'''
 
 
@@ -48,6 +55,29 @@ def camera(page):
 
 def far(a, b):
     return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
+
+
+def direction(seen):
+    away = [b - a for a, b in zip(seen['eye'], seen['target'])]
+    return [x / far(seen['target'], seen['eye']) for x in away]
+
+
+def seen_at(seen, place, page):
+    """Where in the picture a place is: x and y, 0 to 1. The camera is upright."""
+    wide, high = page.evaluate(PICTURE)[2:]
+    fx, fy, fz = direction(seen)
+    flat = math.hypot(fx, fy)
+    right, up = (fy / flat, -fx / flat, 0), (-fx * fz / flat, -fy * fz / flat, flat)
+    to = [b - a for a, b in zip(seen['eye'], place)]
+    depth, x, y = (sum(a * b for a, b in zip(to, axis)) for axis in ((fx, fy, fz), right, up))
+    half = depth * math.tan(math.radians(seen['fov']) / 2)
+    return 0.5 + 0.5 * x / half * high / wide, 0.5 - 0.5 * y / half
+
+
+def on_stage(page, at):
+    """A place in the picture in pixels of the page."""
+    left, top, wide, high = page.evaluate(PICTURE)
+    return left + at[0] * wide, top + at[1] * high
 
 
 def rests(page, frames=2):
@@ -329,6 +359,47 @@ class Tests:
         page.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {there['eye']}[i])) < 0.01")
         blur(page)
         page.key('b')
+
+    def test_photograph(self):
+        """The camera of a photograph is found from places that are clicked in it and in the picture."""
+        page = opened(self.machine, self.served.link, width=1000, height=500)
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("viewer.state.camera.name === 'aerial'")
+        page.key('o')
+        page.wait("document.getElementById('photo-file')?.checkVisibility()")
+        rests(page)
+        there = camera(page)
+        marks = (0.7, 0.7), (0.55, 0.4), (0.2, 0.9), (0.5, 0.8), (0.35, 0.6)
+        places = [page.evaluate(f'''new Promise((done) => viewer.ask('pixel', {{ pane: 0, x: {x}, y: {y} }},
+            (answer) => answer.done < 1 || done(answer.place)))''') for x, y in marks]
+        assert all(places), places
+        page.evaluate('''(async () => {
+            const blob = await new Promise((done) => document.querySelector('.picture').toBlob(done));
+            const files = new DataTransfer();
+            files.items.add(new File([blob], 'photo.png', { type: 'image/png' }));
+            const box = document.getElementById('photo-file');
+            box.files = files.files;
+            box.dispatchEvent(new Event('change'));
+        })()''')
+        page.press('#moving button[data-name=fly]')
+        page.drag(300, 200, 330, 190)
+        page.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {there["target"]}[i])) > 1')
+        rests(page)
+        press_text(page, 'Set pairs')
+        for number, ((x, y), place) in enumerate(zip(marks, places)):
+            page.click(*on_stage(page, (x, y)))
+            page.wait("document.querySelector('#right').innerText.includes('same point')")
+            page.click(*on_stage(page, seen_at(camera(page), place, page)))
+            page.wait(f"document.querySelectorAll('.pairs li').length === {number + 1}")
+        press_text(page, 'Find the camera')
+        page.wait("document.querySelector('#right').innerText.includes('The camera was found')")
+        page.wait(f"Math.abs(viewer.camera.fov - {there['fov']}) > 1e-6") # it is another one, a little
+        found = camera(page)
+        assert far(found['eye'], there['eye']) < 1, (found, there)
+        assert far(direction(found), direction(there)) < 0.01, (found, there)
+        assert abs(found['fov'] - there['fov']) < 1, (found, there)
+        assert not page.errors, page.errors
+        page.close()
 
     def test_by_keys_alone(self):
         page = self.page
