@@ -50,11 +50,12 @@ typedef struct noc_frame_rows {
     float *normal[3];   /* unit; 0: there is no surface */
     float *depth;       /* along the view, m; 0: there is no surface */
     float *motion[3];   /* as NOC_AOV_MOTION, which the frame must have kept */
-    uint32_t *what; /* a noc_row_kind, NOC_ROW_GLOSSY, and from bit 2 on 1 + the instance that shows it, 0: the world */
+    uint32_t *what;     /* a noc_row_kind, NOC_ROW_ALPHA, and between them what instance and material come to */
 } noc_frame_rows;
 
 typedef enum noc_row_kind { NOC_ROW_NOTHING, NOC_ROW_EMITTER, NOC_ROW_SURFACE, NOC_ROW_KINDS = 3 } noc_row_kind;
-#define NOC_ROW_GLOSSY 0x80000000u /* it mirrors, so its light moves with the eye */
+#define NOC_ROW_ALPHA 26  /* from this bit on: how wide a surface's gloss is, GGX alpha times NOC_ROW_MATTE - 1; */
+#define NOC_ROW_MATTE 63u /* it has none */
 
 struct noc_influence;
 typedef struct noc_backend {

@@ -1,10 +1,12 @@
 /* Kernels of a smoother, a row each. They follow Schied et al. 2017, "Spatiotemporal Variance-Guided Filtering": light
  * without textures is accumulated along motion vectors, its variance is estimated over frames, or over the pixels
- * around where there are few, and a filter of passes with holes (a-trous: Dammertz et al. 2010) is guided by it. Three
+ * around where there are few, and a filter of passes with holes (a-trous: Dammertz et al. 2010) is guided by it. Four
  * things are other than there.
  *
  * - Surfaces are told apart by planes: 1 / depth is linear in the picture along a plane (its slope follows from the
  *   normal), so ground that is seen at a grazing angle is one surface, and a wall behind another is not.
+ * - Surfaces are told apart by material, too, and what is glossy is remembered while the eye turns little about it, by
+ * the width of its gloss: light over albedo is a number of the place alone where nothing is mirrored.
  * - A mean over the last few frames is kept beside the long one. Where the two differ over a window by more than their
  *   noise, light has changed, and both begin anew. So a lamp that is switched, or a car's light that passes, leaves a
  *   ghost of a few frames, and what rests keeps its long mean.
@@ -25,10 +27,14 @@
 #define SHOWN_TOLERANCE 0.1f /* of the depth: of the finished picture */
 #define MOST_LIGHT 1e30f
 #define STILL_FRAMES 1024.f /* remembered while nothing moves */
-#define GLOSSY 6.f          /* frames remembered of what mirrors, while the camera or the scene moves */
+#define GLOSS_LIGHT 0.02f   /* of the width of gloss: so far the eye turns while light is remembered, */
+#define GLOSS_SHOWN 0.3f    /* and the finished picture */
 #define SHOWN_STILL 128.f   /* frames of the finished picture that are averaged while nothing moves, */
 #define SHOWN_MOVING 6.f    /* and else, and for the first */
+#define SHOWN_SKY 3.f       /* frames of a pixel of the sky in motion: what else is in them is brighter */
+#define SHOWN_EMITTERS 4.f  /* frames of what emitters add, in motion */
 #define SHOWN_SETTLES 12    /* still frames, until light has settled */
+#define NOT_ALIKE 1e30f     /* for 1 / variance */
 #define CHUNK 128           /* pixels that are filtered together */
 
 static inline float max_of(float a, float b) { return a > b ? a : b; } /* one instruction; b for NaN */
@@ -147,10 +153,7 @@ static void light_now(const smooth_step *s, size_t i, float now[3]) {
     }
 }
 
-/* What is mirrored moves with the eye, so that little of it is remembered. */
-static void add_frame(const smooth_step *s, uint32_t what, const float now[3], float light[HELD]) {
-    float moving = (float)s->params->history;
-    float most = s->still ? STILL_FRAMES : what & NOC_ROW_GLOSSY ? least_of(GLOSSY, moving) : moving;
+static void add_frame(float most, const float now[3], float light[HELD]) {
     float frames = least_of(light[LIGHT_FRAMES], most - 1) + 1, share = 1 / frames;
     float recent = 1 / least_of(frames, RECENT), y = luma(now[0], now[1], now[2]);
     for (int k = 0; k < 3; k++) {
@@ -181,6 +184,38 @@ static void add_sums(const float light[HELD], const float now[3], float sums[SUM
     sums[SUM_PIXELS] = 1;
 }
 
+/* In which a camera sees a place of a picture of this size. */
+static void direction(const frame_camera *c, float x, float y, float out[3]) {
+    float sx = 2 * x / c->width - 1, sy = 1 - 2 * y / c->height, squares = 0;
+    for (int k = 0; k < 3; k++) {
+        out[k] = c->forward[k] + sx * c->right[k] + sy * c->up[k];
+        squares += out[k] * out[k];
+    }
+    float shorter = 1 / sqrtf(squares);
+    for (int k = 0; k < 3; k++)
+        out[k] *= shorter;
+}
+
+/* Frames in which the eye turns about a surface by so much of the width of its gloss: what is mirrored moves with the
+ * eye. A camera that only turns sees the same. */
+static float glossy_frames(const smooth_step *s, int x, int y, float share) {
+    size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
+    uint32_t alpha = s->now.what[i] >> NOC_ROW_ALPHA;
+    if (s->still || alpha == NOC_ROW_MATTE)
+        return STILL_FRAMES;
+    if (!s->then || !(s->rows.motion[2][i] > 0))
+        return 1;
+    float now[3], then[3], squares = 0;
+    float px = (float)x + s->now.camera.jitter[0], py = (float)y + s->now.camera.jitter[1];
+    float sx = s->then->camera.width / s->now.camera.width, sy = s->then->camera.height / s->now.camera.height;
+    direction(&s->now.camera, px, py, now);
+    direction(&s->then->camera, (px + s->rows.motion[0][i]) * sx, (py + s->rows.motion[1][i]) * sy, then);
+    for (int k = 0; k < 3; k++)
+        squares += (now[k] - then[k]) * (now[k] - then[k]);
+    float wide = ((float)alpha + 0.5f) / (NOC_ROW_MATTE - 1);
+    return max_of(share * wide / (sqrtf(squares) + 1e-9f), 1);
+}
+
 static void gather(const smooth_step *s, int y) {
     for (int x = 0; x < s->now.width; x++) {
         size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
@@ -191,7 +226,8 @@ static void gather(const smooth_step *s, int y) {
                 light[k] = 0;
         if (some) {
             light_now(s, i, now);
-            add_frame(s, s->now.what[i], now, light);
+            float most = s->still ? STILL_FRAMES : (float)s->params->history;
+            add_frame(least_of(most, glossy_frames(s, x, y, GLOSS_LIGHT)), now, light);
             add_sums(light, now, sums);
         }
         for (int k = 0; k < SUMS; k++)
@@ -287,6 +323,14 @@ static inline void inside(const chunk *c, int dx, int width, int *low, int *high
     *high = least_int(c->from + c->count, width - dx) - c->from;
 }
 
+/* Gloss under this width, as what has it, is narrower in the picture than the pass: it shows the images of lamps. */
+static float sharp_of(const smooth_step *s) {
+    const float *right = s->now.camera.right;
+    float wide = sqrtf(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
+    float pixels = s->now.camera.width / (2 * wide); /* to the radian */
+    return least_of((float)(2 << s->pass) / pixels * (NOC_ROW_MATTE - 1), NOC_ROW_MATTE);
+}
+
 /* Variance is itself noisy: it is averaged over 3 x 3 pixels. */
 static void start_chunk(const smooth_step *s, const smooth_planes *in, int y, chunk *c) {
     float sum[CHUNK] = { 0 }, total[CHUNK] = { 0 };
@@ -307,9 +351,11 @@ static void start_chunk(const smooth_step *s, const smooth_planes *in, int y, ch
     size_t first = c->row + (size_t)c->from;
     const float *inverse = s->now.inverse + first, *iy = in->y + first, *ir = in->r + first, *ib = in->b + first;
     const float *variance = in->variance + first;
-    float reach = REACH * RESTING / (RESTING + (float)s->rested);
+    float reach = REACH * RESTING / (RESTING + (float)s->rested), sharp = sharp_of(s);
+    const uint32_t *what = s->now.what + first;
     for (int x = 0; x < c->count; x++) {
-        c->noise[x] = 1 / (reach * sum[x] / total[x] + 1e-30f);
+        float noise = 1 / (reach * sum[x] / total[x] + 1e-30f);
+        c->noise[x] = (float)(what[x] >> NOC_ROW_ALPHA) < sharp ? NOT_ALIKE : noise;
         c->plane[x] = inverse[x] > 0 ? 1 / (PLANE_TOLERANCE * inverse[x]) : 1e30f;
         c->y[x] = 4 * iy[x];
         c->r[x] = 4 * ir[x];
@@ -329,6 +375,7 @@ static void add_tap(const smooth_step *s, const smooth_planes *in, int dx, int d
     const float *y = in->y + here, *qi = s->now.inverse + there, *qx = s->now.normal[0] + there;
     const float *qy = s->now.normal[1] + there, *qz = s->now.normal[2] + there, *ty = in->y + there;
     const float *tr = in->r + there, *tb = in->b + there, *tv = in->variance + there;
+    const uint32_t *what = s->now.what + here, *other = s->now.what + there;
     float ox = (float)dx, oy = (float)dy;
     inside(c, dx, s->now.width, &low, &high);
     for (int x = low; x < high; x++) {
@@ -337,7 +384,8 @@ static void add_tap(const smooth_step *s, const smooth_planes *in, int dx, int d
         float plane = max_of(1 - off * c->plane[x], 0);
         float turn = max_of(1 - NORMAL_SHARPNESS * (1 - cosine), 0);
         float alike = max_of(1 - step * step * c->noise[x], 0);
-        float weight = share * plane * turn * alike * alike;
+        float same = what[x] == other[x] ? share : 0;
+        float weight = same * plane * turn * alike * alike;
         c->y[x] += weight * ty[x];
         c->r[x] += weight * tr[x];
         c->b[x] += weight * tb[x];
@@ -417,28 +465,14 @@ static void add_shown(const smooth_frame *then, size_t at, float share, float ou
         out[k] += share * then->shown[at][k];
 }
 
-/* The picture is moved by cubics, which keep it sharp, where all that is around is there. */
-static bool shown_at(const smooth_step *s, const place *p, float out[HELD]) {
-    const smooth_frame *then = s->then;
-    float total = 0, wx[4], wy[4];
-    size_t at;
-    bool all = p->x >= 1 && p->y >= 1 && p->x + 2 < then->width && p->y + 2 < then->height;
-    for (int tap = 0; tap < 4; tap++) {
-        bool there = tap_of(then, p, tap, &at) &&
-                     (s->still || fabsf(then->nearest[at] - p->inverse) < SHOWN_TOLERANCE * p->inverse);
-        float share = there && then->shown[at][SHOWN_FRAMES] > 0 ? share_of(p, tap) : 0;
-        total += share;
-        all = all && (share > 0 || share_of(p, tap) <= 0);
-        if (share > 0)
-            add_shown(then, at, share, out);
-    }
-    if (!(total > 0.01f))
-        return false;
-    for (int k = 0; k < HELD; k++)
-        out[k] /= total;
-    if (!all || s->still)
-        return true;
-    float frames = out[SHOWN_FRAMES];
+/* Of what surfaces and sky show, and of what emitters add. */
+enum { KNOWN_SURFACE = 1, KNOWN_EMITTER = 2 };
+
+/* By cubics, which keep the picture sharp. */
+static void cubics_at(const smooth_frame *then, const place *p, float out[HELD]) {
+    float wx[4], wy[4], frames = out[SHOWN_FRAMES];
+    if (!(p->x >= 1 && p->y >= 1 && p->x + 2 < then->width && p->y + 2 < then->height))
+        return;
     cubic(p->fx, wx);
     cubic(p->fy, wy);
     for (int k = 0; k < HELD; k++)
@@ -447,60 +481,100 @@ static bool shown_at(const smooth_step *s, const place *p, float out[HELD]) {
         for (int u = 0; u < 4; u++)
             add_shown(then, (size_t)(p->y + v - 1) * (size_t)then->width + (size_t)(p->x + u - 1), wx[u] * wy[v], out);
     out[SHOWN_FRAMES] = frames;
-    return true;
 }
 
-/* What was shown of surfaces and sky, held to what this frame has of them around the pixel. */
+/* What was shown there; which of the two, and no number where neither is known. */
+static int shown_at(const smooth_step *s, const place *p, float out[HELD]) {
+    const smooth_frame *then = s->then;
+    float surfaces = 0, emitters = 0, missing = 0;
+    for (int tap = 0; tap < 4; tap++) {
+        size_t at;
+        float share = share_of(p, tap);
+        bool there = tap_of(then, p, tap, &at) &&
+                     (s->still || fabsf(then->nearest[at] - p->inverse) < SHOWN_TOLERANCE * p->inverse);
+        bool surface = there && then->shown[at][SHOWN_FRAMES] > 0;
+        emitters += there ? share : 0;
+        surfaces += surface ? share : 0;
+        missing += surface ? 0 : share;
+        for (int k = SHOWN_EMITTER; k < HELD && there; k++)
+            out[k] += share * then->shown[at][k];
+        for (int k = 0; k < SHOWN_EMITTER && surface; k++)
+            out[k] += share * then->shown[at][k];
+    }
+    bool known[2] = { surfaces > 0.01f, emitters > 0.01f };
+    for (int k = 0; k < SHOWN_EMITTER; k++) {
+        out[k] = known[0] ? out[k] / surfaces : 0;
+        out[SHOWN_EMITTER + k] = known[1] ? out[SHOWN_EMITTER + k] / emitters : 0;
+    }
+    if (!(missing > 0) && !s->still)
+        cubics_at(then, p, out);
+    return (known[0] ? KNOWN_SURFACE : 0) | (known[1] ? KNOWN_EMITTER : 0);
+}
+
+/* What was shown, held to what this frame has around the pixel: surfaces and sky in the cross of five, so that little
+ * of an edge comes to the dark beside it, emitters in all nine. So no light of theirs lies farther off than a pixel. */
 static void hold(const smooth_step *s, int x, int y, float shown[HELD]) {
-    float low[3] = { MOST_LIGHT, MOST_LIGHT, MOST_LIGHT }, high[3] = { -1, -1, -1 };
+    float low[HELD], high[HELD];
+    for (int k = 0; k < HELD; k++) {
+        low[k] = MOST_LIGHT;
+        high[k] = -1;
+    }
     for (int v = most_int(y - 1, 0); v <= least_int(y + 1, s->now.height - 1); v++)
         for (int u = most_int(x - 1, 0); u <= least_int(x + 1, s->now.width - 1); u++) {
             const float *made = s->made[(size_t)v * (size_t)s->now.width + (size_t)u];
-            for (int k = 0; k < 3 && made[SHOWN_FRAMES] > 0; k++) {
+            int from = made[SHOWN_FRAMES] > 0 && (u == x || v == y) ? 0 : SHOWN_EMITTER;
+            for (int k = from; k < HELD; k++) {
                 low[k] = least_of(made[k], low[k]);
                 high[k] = max_of(made[k], high[k]);
             }
         }
     for (int k = 0; k < 3 && high[0] >= 0; k++)
         shown[k] = max_of(least_of(shown[k], high[k]), low[k]);
+    for (int k = SHOWN_EMITTER; k < HELD && !s->still; k++)
+        shown[k] = max_of(least_of(shown[k], high[k]), low[k]);
 }
 
 /* What was shown of a pixel, by the motion of the nearest thing around: edges move with what is before them. */
-static bool shown_before(const smooth_step *s, int x, int y, float out[HELD]) {
+static int shown_before(const smooth_step *s, int x, int y, float out[HELD]) {
     float motion[3] = { 0, 0, 1 };
     size_t at;
     place p;
     nearest_around(s, x, y, &at);
     for (int k = 0; k < 3 && !s->still; k++)
         motion[k] = s->rows.motion[k][at];
-    if (!s->params->antialias || !place_before(s, x, y, motion, &p) || !shown_at(s, &p, out))
-        return false;
-    if (s->rested < SHOWN_SETTLES)
+    int known = s->params->antialias && place_before(s, x, y, motion, &p) ? shown_at(s, &p, out) : 0;
+    if (known && s->rested < SHOWN_SETTLES)
         hold(s, x, y, out);
-    return true;
+    return known;
 }
 
-/* Emitters are averaged while all is still alone: they are so bright that any blur of them would be a halo. */
-static void add_shown_frame(const smooth_step *s, const float made[HELD], bool known, float out[HELD]) {
-    float most = s->rested < SHOWN_SETTLES ? SHOWN_MOVING : SHOWN_STILL;
+/* Frames of the finished picture that are remembered at most. */
+static float most_shown(const smooth_step *s, int x, int y) {
+    if (s->rested >= SHOWN_SETTLES)
+        return SHOWN_STILL;
+    noc_row_kind kind = kind_of(s->now.what[(size_t)y * (size_t)s->now.width + (size_t)x]);
+    if (kind == NOC_ROW_NOTHING)
+        return s->still ? SHOWN_MOVING : SHOWN_SKY;
+    return kind == NOC_ROW_SURFACE ? least_of(SHOWN_MOVING, glossy_frames(s, x, y, GLOSS_SHOWN)) : SHOWN_MOVING;
+}
+
+static void add_shown_frame(const smooth_step *s, float most, const float made[HELD], int known, float out[HELD]) {
     if (made[SHOWN_FRAMES] > 0) {
         out[SHOWN_FRAMES] = least_of(out[SHOWN_FRAMES], most - 1) + 1;
         for (int k = 0; k < 3; k++)
             out[k] += (made[k] - out[k]) / out[SHOWN_FRAMES];
     }
-    float share = s->still && known ? 1 / ((float)least_int(s->rested, (int)SHOWN_STILL - 1) + 1) : 1;
-    for (int k = SHOWN_EMITTER; k <= SHOWN_SHARE; k++)
-        out[k] += (made[k] - out[k]) * share;
+    float frames = known & KNOWN_EMITTER ? SHOWN_EMITTERS + least_of((float)s->rested, SHOWN_STILL) : 1;
+    for (int k = SHOWN_EMITTER; k < HELD; k++)
+        out[k] += (made[k] - out[k]) / frames;
 }
 
 static void show(const smooth_step *s, int y) {
     for (int x = 0; x < s->now.width; x++) {
         size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
         float out[HELD] = { 0 };
-        bool known = shown_before(s, x, y, out);
-        for (int k = 0; k < HELD && !known; k++)
-            out[k] = 0;
-        add_shown_frame(s, s->made[i], known, out);
+        int known = shown_before(s, x, y, out);
+        add_shown_frame(s, most_shown(s, x, y), s->made[i], known, out);
         for (int k = 0; k < HELD; k++)
             s->now.shown[i][k] = out[k];
         for (int k = 0; k < 3; k++)

@@ -204,6 +204,120 @@ static void the_same_for_any_threads(void **state) {
     noc_scene_destroy(s);
 }
 
+/* What is off in the last picture of a walk, and what in the frame that it is made of, beside the mean of frames. */
+typedef struct walk {
+    double relmse, frame; /* of luminance, where no emitter is seen */
+    double ratio;         /* of the means */
+    double cover, covers; /* of the share of emitters: mean square error of the picture, of the frame */
+} walk;
+
+static double relative_error(const float *x, const float *r, double floor) {
+    double a = luma(x), b = luma(r);
+    return (a - b) * (a - b) / (b * b + floor * floor);
+}
+
+static walk walked(noc_scene *s, noc_camera c, double step, int steps) {
+    noc_render_params p = moving(NOC_METHOD_RIS);
+    noc_view *v = rendered(s, &c, &p, 0, 1);
+    noc_smoother *smoother = noc_smoother_create(noc_view_device(v));
+    const noc_image *image = NULL;
+    walk w = { 0 };
+    for (int i = 0; i < steps; i++) {
+        c.eye[1] += step;
+        c.target[1] += step;
+        noc_view_restart(v);
+        assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+        image = noc_smoother_step(smoother, v, NULL);
+        check_picture(image, W, H);
+    }
+    noc_image *frame = noc_view_image(v);
+    noc_view_restart(v);
+    for (int i = 0; i < 128; i++)
+        assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+    noc_image *mean = noc_view_image(v);
+    double dark = 0, of[2] = { 0 };
+    int n = 0;
+    for (int i = 0; i < N; i++)
+        dark += mean->emitter[i] ? 0 : .01 * luma(mean->rgb + 3 * i) / N;
+    for (int i = 0; i < N; i++) {
+        double share = mean->coverage[4 * i + 3];
+        w.cover += pow(image->coverage[4 * i + 3] - share, 2) / N;
+        w.covers += pow(frame->coverage[4 * i + 3] - share, 2) / N;
+        if (mean->emitter[i])
+            continue;
+        w.relmse += relative_error(image->rgb + 3 * i, mean->rgb + 3 * i, dark);
+        w.frame += relative_error(frame->rgb + 3 * i, mean->rgb + 3 * i, dark);
+        of[0] += luma(image->rgb + 3 * i);
+        of[1] += luma(mean->rgb + 3 * i);
+        n++;
+    }
+    w.relmse /= NOC_MAX(n, 1);
+    w.frame /= NOC_MAX(n, 1);
+    w.ratio = of[1] > 0 ? of[0] / of[1] : 1;
+    noc_image_destroy(frame);
+    noc_image_destroy(mean);
+    noc_smoother_destroy(smoother);
+    close_view(v);
+    return w;
+}
+
+static void add_lamp(noc_scene *s, double x, double y, double z, float emission) {
+    noc_light l = {
+        .kind = NOC_LIGHT_SPHERE, .position = { x, y, z }, .radius = .1, .emission = { emission, emission, emission }
+    };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+}
+
+/* A wet road mirrors lamps ahead, and stripes of paint on it do not: what one mirrors is not given to the other, though
+ * they lie in a plane, and it stays before the eye. */
+static void walks_on_a_wet_road(void **state) {
+    noc_scene *s = noc_scene_create(NULL);
+    int road =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { .03f, .03f, .03f }, .f0 = .05f, .roughness = .5f });
+    int paint = matte(s, .6f);
+    for (int i = 0; i < 24; i++)
+        QUAD(s, i & 1 ? paint : road, -20, -12 + i, 0, 40, 0, 0, 0, 1, 0);
+    for (int i = -2; i <= 2; i++)
+        add_lamp(s, 3 * i, 14, 2.5, 4000);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    walk w = walked(s, look(0, -14, 1.6, 0, -4, .3, 60), .08, 40);
+    print_message("# wet road: relMSE %.4f, of the frame %.4f, mean %.4f\n", w.relmse, w.frame, w.ratio);
+    assert_true(w.relmse < 1 && w.ratio < 1.1);
+    noc_scene_destroy(s);
+}
+
+/* Lamps in a window beside the way: their images lie behind it, and the glass around them is dark. */
+static void walks_past_a_window(void **state) {
+    noc_scene *s = noc_scene_create(NULL);
+    int glass =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { .01f, .01f, .01f }, .f0 = .04f, .roughness = .1f });
+    add_floor(s, matte(s, .3f), 0, 0, 0, 30);
+    QUAD(s, glass, 2, -30, 0, 0, 60, 0, 0, 0, 6);
+    for (int i = 0; i < 6; i++)
+        add_lamp(s, -6, -10 + 6 * i, 3, 4000);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    walk w = walked(s, look(0, -12, 1.6, 6, 0, 2, 60), .08, 40);
+    print_message("# window: relMSE %.4f, of the frame %.4f, mean %.4f\n", w.relmse, w.frame, w.ratio);
+    assert_true(w.relmse < .3 && fabs(w.ratio - 1) < .1);
+    noc_scene_destroy(s);
+}
+
+/* Edges of emitters: their share of pixels is nearer the mean than a frame's, which has one sample. */
+static void walks_to_lit_windows(void **state) {
+    noc_scene *s = noc_scene_create(NULL);
+    int lit =
+        noc_scene_add_material(s, &(noc_material){
+                                      .albedo = { .5f, .5f, .5f }, .roughness = 1, .emission = { 300, 250, 200 } });
+    QUAD(s, matte(s, .1f), -20, 10, 0, 40, 0, 0, 0, 0, 20);
+    for (int i = 0; i < 30; i++)
+        QUAD(s, lit, -8 + 3 * (i % 6), 9.9, 1 + 2.5 * (i / 6), 1.1, 0, 0, 0, 0, 1.3);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    walk w = walked(s, look(0, -12, 5, 0, 0, 5, 60), .08, 40);
+    print_message("# lit windows: share off by %.5f, of the frame %.5f\n", w.cover, w.covers);
+    assert_true(w.covers > .005 && w.cover < .3 * w.covers);
+    noc_scene_destroy(s);
+}
+
 /* What a step refuses, and what it begins anew after. */
 static void refuses(void **state) {
     noc_scene *s = street(8);
@@ -253,11 +367,10 @@ static void is_in_no_figures(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rests_on_the_mean),
-        cmocka_unit_test(marks_emitters),
-        cmocka_unit_test(forgets_what_changed),
-        cmocka_unit_test(the_same_for_any_threads),
-        cmocka_unit_test(refuses),
+        cmocka_unit_test(rests_on_the_mean),        cmocka_unit_test(marks_emitters),
+        cmocka_unit_test(forgets_what_changed),     cmocka_unit_test(walks_on_a_wet_road),
+        cmocka_unit_test(walks_past_a_window),      cmocka_unit_test(walks_to_lit_windows),
+        cmocka_unit_test(the_same_for_any_threads), cmocka_unit_test(refuses),
         cmocka_unit_test(is_in_no_figures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

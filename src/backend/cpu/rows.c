@@ -17,10 +17,12 @@ static v3 reflects(const noc_scene *scene, const gblock *g, int l) {
     return V3(fmaxf(albedo.x + m->f0, least), fmaxf(albedo.y + m->f0, least), fmaxf(albedo.z + m->f0, least));
 }
 
-/* Sharper than a wall in the sun: GGX alpha under a quarter, which is a roughness of a half. */
-static uint32_t mirrors(const noc_scene *scene, const gblock *g, int l) {
+/* Neighbours that differ in it are not of one surface; two in sixteen million that differ have the same. */
+static uint32_t surface_of(const noc_scene *scene, const gblock *g, int l, uint32_t instance) {
     const noc_material_record *m = &scene->material_records.data[g->material[l]];
-    return m->f0 > 0 && m->alpha < 0.25f ? NOC_ROW_GLOSSY : 0;
+    uint32_t alpha = m->f0 > 0 ? (uint32_t)(m->alpha * (NOC_ROW_MATTE - 1)) : NOC_ROW_MATTE;
+    uint32_t number = (instance * 0x9e3779b9u ^ (uint32_t)g->material[l]) * 0x85ebca6bu;
+    return alpha << NOC_ROW_ALPHA | (number >> (32 - NOC_ROW_ALPHA) & ~3u);
 }
 
 static void store(float *const to[3], size_t i, v3 v) {
@@ -45,7 +47,7 @@ static void pixel(const struct rows_run *run, size_t at, int l, size_t to) {
         !some ? 0 : (g->px[l] - eye[0]) * sight[0] + (g->py[l] - eye[1]) * sight[1] + (g->pz[l] - eye[2]) * sight[2];
     noc_row_kind kind = !some ? NOC_ROW_NOTHING : g->light[l] != NOC_NO_LIGHT ? NOC_ROW_EMITTER : NOC_ROW_SURFACE;
     uint32_t instance = some && b->instance ? b->instance[at][l] + 1 : 0; /* NO_INSTANCE + 1 is 0 */
-    out->what[to] = (uint32_t)kind | (instance << 2 & ~NOC_ROW_GLOSSY) | (some ? mirrors(run->s->scene, g, l) : 0);
+    out->what[to] = (uint32_t)kind | (some ? surface_of(run->s->scene, g, l, instance) : 0);
 }
 
 static void block_row(void *arg, size_t row, int index) {
