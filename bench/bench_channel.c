@@ -41,11 +41,9 @@ int main(int argc, char **argv) {
         h = h * 1664525u + 1013904223u;
         c->value[i] = h >> 28 ? (float)pow(10, 1.5 * sin(x) * cos(y) + 0.1 * (h >> 8) / (1 << 24)) : -1;
     }
-    static const double lines[] = { 1, 2, 5, 10, 20 };
     noc_channel_params found = { 0 }, told = { .low = 0.03, .high = 50 }, alone = told, isolines = told;
     alone.part = isolines.part = NOC_CHANNEL_PICTURE;
-    isolines.isolines = lines;
-    isolines.isoline_count = 5;
+    isolines.isolines = (noc_isolines){ { 1, 2, 5, 10, 20 }, .count = 5 };
     c->scale = NOC_CHANNEL_LOG;
     measure("logarithmic, ends found, legend", c, &found);
     measure("logarithmic, ends told, legend", c, &told);

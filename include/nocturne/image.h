@@ -150,12 +150,6 @@ NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_D
 
 NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
                                      noc_comparison *out, noc_log *log);
-/* Signed difference of luminance in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit
- * sRGB. unit stands in the legend (Latin-1); NULL is cd/m2. *out is malloc'ed (free it), its size in *width,
- * *height. */
-NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out,
-                                        int *width, int *height, noc_log *log);
-
 /* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_view_aov). Rows from
  * the top. */
 typedef enum noc_channel_scale {
@@ -189,15 +183,37 @@ typedef enum noc_channel_part { NOC_CHANNEL_WHOLE, NOC_CHANNEL_PICTURE, NOC_CHAN
 
 #define NOC_ISOLINES 32 /* of a picture at most */
 
+/* Lines where the numbers, smoothed over 5 x 5 pixels against noise (of wide pictures over more), pass these values,
+ * and do not jump. A bar whose ends are found reaches to them. */
+typedef struct noc_isolines {
+    double value[NOC_ISOLINES]; /* count of them, above 0, rising */
+    int count;
+    int round; /* without any: about so many, at round values within the bar */
+} noc_isolines;
+
+/* Reads "5,7.5,10" as values (one of them: "5,"), and "6" as that many round ones; "0" are none. false: it is neither,
+ * and lines are as they were. */
+NOC_API bool noc_isolines_parse(const char *text, noc_isolines *lines);
+/* Writes what noc_isolines_parse reads; the length, as snprintf has it. */
+NOC_API int noc_isolines_text(const noc_isolines *lines, char *text, size_t size);
+
+/* A colour bar: its ends, round numbers within them, and the isolines. */
+#define NOC_BAR_TICKS 16
+typedef struct noc_bar {
+    double low, high;
+    bool logarithmic;
+    int tick_count, isoline_count;
+    double ticks[NOC_BAR_TICKS], isolines[NOC_ISOLINES];
+} noc_bar;
+
 /* How numbers are shown. All 0, and NULL, is as the channel says. */
 typedef struct noc_channel_params {
     double low, high;    /* values at the ends of the colour bar; equal: taken from the channel */
     noc_bar_scale scale; /* of the bar, in place of noc_channel.scale */
-    /* Lines where the numbers, smoothed over 5 x 5 pixels against noise (of wide pictures over more), pass these
-     * values, and do not jump: isoline_count of them, rising; a bar whose ends are found reaches to them. Or about so
-     * many at round values within the bar */
-    const double *isolines;
-    int isoline_count, round_isolines;
+    /* That of the picture before: ends that are taken from the channel stay those, so that colours keep their meanings,
+     * until the numbers reach a quarter beyond them, or a third of the way alone. NULL: there was none */
+    const noc_bar *last;
+    noc_isolines isolines;
     noc_channel_part part;
     int legend_width; /* pixels that a legend alone has at least; 0: as under the picture */
 } noc_channel_params;
@@ -210,16 +226,8 @@ typedef struct noc_channel_params {
 NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out,
                                         int *width, int *height, noc_log *log);
 
-/* The bar that a picture of these params has, for a legend of one's own: its ends, round numbers within them, and the
- * isolines. Ends that were found here can be said in `low` and `high` of the next pictures, which then keep them. */
-#define NOC_BAR_TICKS 16
-typedef struct noc_bar {
-    double low, high;
-    bool logarithmic;
-    int tick_count, isoline_count;
-    double ticks[NOC_BAR_TICKS], isolines[NOC_ISOLINES];
-} noc_bar;
-/* NOC_ERR_ARGUMENT after reporting: labels and vectors have none, or what the params say cannot be. */
+/* The bar that a picture of these params has, for a legend of one's own, and for `last` of the next picture.
+ * NOC_ERR_ARGUMENT after reporting: labels and vectors have none, or what the params say cannot be. */
 NOC_API noc_status noc_channel_bar(const noc_channel *channel, const noc_channel_params *params, noc_bar *bar,
                                    noc_log *log);
 NOC_API void noc_bar_colour(double at, uint8_t rgb[3]); /* of every bar: at 0 its low end, at 1 its high one */
@@ -231,6 +239,23 @@ NOC_API void noc_label_colour(const noc_channel *channel, uint32_t label, uint8_
  * "1 wall #c08060, ..." (EXR: without the colour). */
 NOC_API noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                                      const noc_image_meta *meta, noc_log *log);
+
+/* How the difference of two pictures is shown. All 0, and NULL: with a legend, ends found from the two. */
+typedef struct noc_difference_params {
+    const char *unit;    /* of the legend, Latin-1; NULL: cd/m2 */
+    double limit;        /* difference at the ends of the bar; 0: found, so that 99 % of the pixels lie within */
+    const noc_bar *last; /* as noc_channel_params has it */
+    noc_channel_part part;
+} noc_difference_params;
+
+/* Signed difference of luminance in a diverging colour map (blue: x darker, red: x brighter), as 8-bit sRGB. *out is
+ * malloc'ed (free it), its size in *width, *height. */
+NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const noc_difference_params *params,
+                                        uint8_t **out, int *width, int *height, noc_log *log);
+/* The bar of that picture. */
+NOC_API noc_status noc_image_difference_bar(const noc_image *x, const noc_image *r, const noc_difference_params *params,
+                                            noc_bar *bar, noc_log *log);
+NOC_API void noc_difference_colour(double at, uint8_t rgb[3]); /* of its bar: at 0 its low end, at 1 its high one */
 
 #ifdef __cplusplus
 }

@@ -147,7 +147,8 @@ static noc_status write_difference(const compare_args *args, const noc_image *x,
     uint8_t *rgb = NULL;
     int width, height;
     bool relative = args->compare.relative;
-    noc_status status = noc_image_difference(x, r, relative ? "of white" : NULL, &rgb, &width, &height, log);
+    noc_status status = noc_image_difference(x, r, &(noc_difference_params){ .unit = relative ? "of white" : NULL },
+                                             &rgb, &width, &height, log);
     if (status)
         return status;
     const char *keys[] = { "picture" }, *values[] = { relative ? "signed difference of luminance, white = 1"

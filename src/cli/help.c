@@ -108,7 +108,23 @@ static void print_option(FILE *out, const noc_option *o, const void *defaults, i
     free(right);
 }
 
+/* The arguments that the command begins with when nothing is said: its preset sets some of them. free() it. */
+static void *make_defaults(const cli_command *command) {
+    char *all = cli_alloc(command->args_size);
+    int preset = -1;
+    memcpy(all, command->defaults, command->args_size);
+    for (const cli_set *set = command->sets; set->table; set++)
+        for (const noc_option *o = set->table(); o->name; o++)
+            if (!strcmp(o->name, "preset"))
+                memcpy(&preset, all + set->offset + o->offset, sizeof(preset));
+    for (const cli_set *set = command->sets; set->table && preset >= 0; set++)
+        if (set->table == noc_render_options)
+            noc_render_use_preset((noc_render_params *)(void *)(all + set->offset), (noc_preset)preset);
+    return all;
+}
+
 void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns) {
+    char *defaults = make_defaults(command);
     const char *done[32];
     size_t done_count = 0;
     for (const cli_set *first = command->sets; first->table; first++) {
@@ -124,9 +140,10 @@ void cli_each_option(const cli_command *command, FILE *out, const char *heading,
             for (const cli_set *set = command->sets; set->table; set++)
                 for (const noc_option *o = set->table(); o->name; o++)
                     if (!strcmp(o->group, f->group) && !cli_hidden(set, o))
-                        visit(out, o, (const char *)command->defaults + set->offset, columns);
+                        visit(out, o, defaults + set->offset, columns);
         }
     }
+    free(defaults);
 }
 
 void cli_help(const cli_command *command, FILE *out) {

@@ -9,16 +9,6 @@
     { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
-    { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
-      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed|"
-      "motion|luminance|illuminance|"
-      "influential|influential-share|runner-up|runner-up-share",
-      "", "what is written: the picture, or a view of light, sampling or surfaces" },
-    TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of the view's colour bar; else found from its numbers"),
-    { "show-scale", "Output", NOC_OPTION_CHOICE, offsetof(A, range.scale), 0, 0, "auto|linear|log", "",
-      "steps of the colour bar; auto: what suits the view" },
-    TEXT("isolines", "Output", isolines, "LIST",
-         "contours of a view: at 1,2,5 (at one: 5,), or N of them at round values"),
     TEXT("influence-obj", "Output", influence_obj, "FILE",
          "write the influence volumes of --candidates influence as OBJ too"),
     NOC_OPTION_PRESET(A, "Estimator"),
@@ -71,6 +61,7 @@ const cli_command cli_render = {
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
     "once.\n",
     { { options, 0, NULL },
+      { cli_show_options, 0, NULL },
       { cli_animation_options, offsetof(A, animation), NULL },
       { cli_camera_options, 0, NULL },
       { noc_camera_options, offsetof(A, camera), NULL },

@@ -26,7 +26,6 @@ typedef struct render_args {
     int preset; /* noc_preset */
     int show;   /* 0: the picture, else 1 + noc_aov */
     const char *show_range, *isolines;
-    double lines[NOC_ISOLINES]; /* --isolines */
     const char *influence_obj;
     noc_channel_params range;
     const char *camera_name;
@@ -115,6 +114,8 @@ int cli_check_camera(const render_args *args);
 void cli_tell_photo(const render_args *args, const noc_scene *scene); /* how well its camera fits */
 
 /* show.c */
+const noc_option *cli_show_options(void);
+/* --show and its bar, once the preset is used. CLI_OK or CLI_USAGE. */
 int cli_parse_show(render_args *args);
 void cli_drop_view(render_job *job); /* the one that was written last */
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta);

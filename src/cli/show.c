@@ -5,6 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define A render_args
+#define TEXT(n, f, u, h)                                                                                               \
+    { n, "Mode", NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
+
+const noc_option *cli_show_options(void) {
+    static const noc_option rows[] = {
+        { "show", "Mode", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
+          "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed|"
+          "motion|luminance|illuminance|"
+          "influential|influential-share|runner-up|runner-up-share",
+          "", "the picture, or in its place a view of light, sampling or surfaces" },
+        TEXT("show-range", show_range, "LOW,HIGH", "ends of the view's colour bar; else found from its numbers"),
+        { "show-scale", "Mode", NOC_OPTION_CHOICE, offsetof(A, range.scale), 0, 0, "auto|linear|log", "",
+          "steps of the colour bar; auto: what suits the view" },
+        TEXT("isolines", isolines, "LIST",
+             "contours of a view: at 1,2,5 (at one: 5,), or N of them at round values; 0 = none"),
+        { NULL },
+    };
+    return rows;
+}
+
 /* The option's choices are "picture" and then the views in their order. */
 static noc_aov shown(const render_args *args) { return (noc_aov)(args->show - 1); }
 
@@ -20,11 +41,12 @@ static int parse_range(render_args *args) {
     if (!args->show_range)
         return CLI_OK;
     if (!noc_text_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1]))
-        return cli_usage(&cli_render, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first", args->show_range);
+        return cli_usage(args->command, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first",
+                         args->show_range);
     bool logarithmic = args->range.scale == NOC_BAR_OF_CHANNEL ? noc_aov_get_info(shown(args)).scale == NOC_CHANNEL_LOG
                                                                : args->range.scale == NOC_BAR_LOG;
     if (logarithmic && !(ends[0] > 0))
-        return cli_usage(&cli_render,
+        return cli_usage(args->command,
                          "--show-range: the bar of --show %s is logarithmic, and begins above 0; "
                          "--show-scale linear begins at 0",
                          noc_aov_name(shown(args)));
@@ -33,34 +55,12 @@ static int parse_range(render_args *args) {
     return CLI_OK;
 }
 
-/* A number of lines, or their values: with a comma. */
 static int parse_isolines(render_args *args) {
-    char text[400];
-    if (!args->isolines)
+    if (!args->isolines || noc_isolines_parse(args->isolines, &args->range.isolines))
         return CLI_OK;
-    size_t length = strlen(args->isolines), count = 1;
-    bool list = strchr(args->isolines, ',') != NULL, good = length && length < sizeof(text);
-    snprintf(text, sizeof(text), "%s", args->isolines);
-    if (good && text[length - 1] == ',')
-        text[length - 1] = 0;
-    for (const char *at = text; *at; at++)
-        count += *at == ',';
-    good = good && count <= NOC_ISOLINES && noc_text_numbers(text, ',', count, args->lines);
-    for (size_t i = 0; good && i < count; i++)
-        good = isfinite(args->lines[i]) && args->lines[i] > (i ? args->lines[i - 1] : 0);
-    if (good && !list)
-        good = args->lines[0] == floor(args->lines[0]) && args->lines[0] <= NOC_ISOLINES;
-    if (!good)
-        return cli_usage(&cli_render,
-                         "--isolines: \"%.60s\" is neither rising values, 1,2,5, nor a number of lines, 1 to %d",
-                         args->isolines, NOC_ISOLINES);
-    if (list) {
-        args->range.isolines = args->lines;
-        args->range.isoline_count = (int)count;
-    } else {
-        args->range.round_isolines = (int)args->lines[0];
-    }
-    return CLI_OK;
+    return cli_usage(args->command,
+                     "--isolines: \"%.60s\" is neither rising values, 1,2,5, nor a number of lines, 0 to %d",
+                     args->isolines, NOC_ISOLINES);
 }
 
 int cli_parse_show(render_args *args) {
@@ -70,15 +70,18 @@ int cli_parse_show(render_args *args) {
                           : args->range.scale ? "show-scale"
                                               : NULL;
     if (of_bars && !bar)
-        return cli_usage(&cli_render, "--%s is for views that have a colour bar: --show illuminance, for one", of_bars);
+        return cli_usage(args->command, "--%s is for views that have a colour bar: --show illuminance, for one",
+                         of_bars);
     if (!args->show)
         return CLI_OK;
     int status = parse_range(args);
     status = status ? status : parse_isolines(args);
     if (status)
         return status;
-    if ((shown(args) == NOC_AOV_VARIANCE || shown(args) == NOC_AOV_ERROR) && args->frames < 2 && !(args->time > 0))
-        return cli_usage(&cli_render, "--show %s needs two frames or more", noc_aov_name(shown(args)));
+    bool still = args->command == &cli_render; /* in the viewer there are always more */
+    bool of_many = shown(args) == NOC_AOV_VARIANCE || shown(args) == NOC_AOV_ERROR;
+    if (still && of_many && args->frames < 2 && !(args->time > 0))
+        return cli_usage(args->command, "--show %s needs two frames or more", noc_aov_name(shown(args)));
     args->render.aovs = 1u << shown(args);
     noc_log *log = cli_log_create(&args->common);
     noc_status checked = noc_render_check(&args->render, log);

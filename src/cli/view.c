@@ -77,11 +77,13 @@ const cli_command cli_view = {
     "Examples\n"
     "  nocturne view\n"
     "  nocturne view city.yaml --open\n"
+    "  nocturne view city.yaml --show illuminance --isolines 5,7.5,10,20\n"
     "  nocturne view city.gml lamps.geojson --view aerial --port 0\n"
     "It prints a link for the browser. From another machine:\n"
     "  ssh -L 8017:127.0.0.1:8017 SERVER nocturne view\n"
     "Ctrl-C ends it.\n",
     { { options, 0, NULL },
+      { cli_show_options, offsetof(A, render), NULL },
       { of_estimator, offsetof(A, render), NULL },
       { cli_camera_options, offsetof(A, render), NULL },
       { noc_camera_options, offsetof(A, render.camera), NULL },
@@ -115,7 +117,8 @@ static int check(view_args *args) {
     cli_add_named(&render->common, &render->import);
     if (!render->common.input_count)
         render->common.inputs[render->common.input_count++] = "builtin:city";
-    return cli_check_city(render);
+    status = cli_check_city(render);
+    return status ? status : cli_parse_show(render);
 }
 
 /* ---- what the viewer asks for ---- */
@@ -232,6 +235,8 @@ static int view(view_args *args, noc_log *log) {
         .camera = render->camera,
         .render = render->render,
         .display = render->display,
+        .show = render->show,
+        .channel = render->range,
         .threads = render->threads,
     };
     source.given = list_given(args, &source.given_count);

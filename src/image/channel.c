@@ -58,7 +58,9 @@ typedef struct painter {
 } painter;
 
 static void painter_init(painter *p, const noc_channel *c, const colorbar *bar) {
-    *p = (painter){ .c = c, .map = colormap_sequential(), .logarithmic = bar->logarithmic, .reach = legend_reach(c) };
+    *p = (painter){
+        .c = c, .map = colormap_of(COLORMAP_SEQUENTIAL), .logarithmic = bar->logarithmic, .reach = legend_reach(c)
+    };
     if (!channel_has_bar(c))
         return;
     double low = bar->logarithmic ? log2(bar->low) : bar->low, high = bar->logarithmic ? log2(bar->high) : bar->high;

@@ -72,13 +72,16 @@ void colormap_init(colormap *map, colormap_kind kind) {
     }
 }
 
-static colormap sequential_map;
-static void make_sequential(void) { colormap_init(&sequential_map, COLORMAP_SEQUENTIAL); }
+static colormap maps[2];
+static void make_maps(void) {
+    colormap_init(&maps[COLORMAP_DIVERGING], COLORMAP_DIVERGING);
+    colormap_init(&maps[COLORMAP_SEQUENTIAL], COLORMAP_SEQUENTIAL);
+}
 
-const colormap *colormap_sequential(void) {
+const colormap *colormap_of(colormap_kind kind) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, make_sequential);
-    return &sequential_map;
+    pthread_once(&once, make_maps);
+    return &maps[kind];
 }
 
 void colormap_polar(double lightness, double chroma, double hue, uint8_t out[3]) {

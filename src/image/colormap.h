@@ -17,7 +17,7 @@ typedef struct colormap {
 } colormap;
 
 void colormap_init(colormap *map, colormap_kind kind);
-const colormap *colormap_sequential(void);                 /* made once */
+const colormap *colormap_of(colormap_kind kind);           /* made once */
 const uint8_t *colormap_at(const colormap *map, double t); /* t is clamped to 0..1; NaN gives the entry of 0 */
 
 /* One colour of Oklab by lightness 0..1, chroma, and hue in radians, as near as sRGB has it. */

@@ -1,7 +1,57 @@
 /* Lines in a channel's picture where its numbers pass given values. */
 #include "image/legend.h"
 
+#include <nocturne/text.h>
+
 #include <math.h>
+
+bool isolines_good(const noc_isolines *lines) {
+    bool good = lines->count >= 0 && lines->count <= NOC_ISOLINES && lines->round >= 0 && lines->round <= NOC_ISOLINES;
+    for (int i = 0; good && i < lines->count; i++)
+        good = isfinite(lines->value[i]) && lines->value[i] > (i ? lines->value[i - 1] : 0);
+    return good;
+}
+
+bool noc_isolines_parse(const char *text, noc_isolines *lines) {
+    enum { LONGEST = 30 * NOC_ISOLINES };
+    char copy[LONGEST];
+    size_t length = text ? strlen(text) : 0, count = 1;
+    noc_isolines read = { .count = 0 };
+    if (!lines || !length || length >= sizeof(copy))
+        return false;
+    memcpy(copy, text, length + 1);
+    bool list = strchr(copy, ',') != NULL;
+    if (copy[length - 1] == ',')
+        copy[length - 1] = 0;
+    for (const char *at = copy; *at; at++)
+        count += *at == ',';
+    if (count > NOC_ISOLINES || !noc_text_numbers(copy, ',', count, read.value))
+        return false;
+    if (list) {
+        read.count = (int)count;
+    } else {
+        if (read.value[0] != floor(read.value[0]) || !(read.value[0] >= 0 && read.value[0] <= NOC_ISOLINES))
+            return false;
+        read = (noc_isolines){ .round = (int)read.value[0] };
+    }
+    if (!isolines_good(&read))
+        return false;
+    *lines = read;
+    return true;
+}
+
+int noc_isolines_text(const noc_isolines *lines, char *text, size_t size) {
+    char all[30 * NOC_ISOLINES] = "";
+    size_t n = 0;
+    if (!lines || !isolines_good(lines))
+        return -1;
+    if (!lines->count)
+        return noc_snprintf(text, size, "%d", lines->round);
+    for (int i = 0; i < lines->count; i++) /* one has a comma behind it */
+        n += (size_t)noc_snprintf(all + n, sizeof(all) - n, "%s%.15g%s", i ? "," : "", lines->value[i],
+                                  lines->count == 1 ? "," : "");
+    return noc_snprintf(text, size, "%s", all);
+}
 
 /* What is smoothed and looked at, on the bar's scale: NAN where a pixel has no value. */
 typedef struct field {

@@ -69,7 +69,17 @@ static bool find_most(const noc_channel *c, bool logarithmic, double *least, dou
     return true;
 }
 
-/* Ends of the colour bar: what was asked for, or round numbers around nearly all. */
+/* Are ends still those of numbers that reach from least to most? Those of a long logarithmic bar may be a tenth of it
+ * off, which is no clear difference there. */
+bool legend_holds(const noc_bar *last, bool logarithmic, double least, double most) {
+    if (!last || last->logarithmic != logarithmic || !(last->high > last->low))
+        return false;
+    double slack = logarithmic ? fmax(1.25, pow(last->high / last->low, 0.1)) : 1.25;
+    bool upper = most <= slack * last->high && most >= last->high / 3;
+    return upper && (!logarithmic || (least >= last->low / slack && least <= 3 * slack * last->low));
+}
+
+/* Ends of the colour bar: what was asked for, those of the picture before, or round numbers around nearly all. */
 static noc_status find_ends(const noc_channel *c, const noc_channel_params *p, colorbar *bar, noc_log *log) {
     bar->logarithmic = p->scale == NOC_BAR_OF_CHANNEL ? c->scale == NOC_CHANNEL_LOG : p->scale == NOC_BAR_LOG;
     bar->low = p->low;
@@ -87,6 +97,11 @@ static noc_status find_ends(const noc_channel *c, const noc_channel_params *p, c
         least = fmin(least, bar->lines[0]);
         most = fmax(most, bar->lines[bar->line_count - 1]);
     }
+    if (legend_holds(p->last, bar->logarithmic, least, most)) {
+        bar->low = p->last->low;
+        bar->high = p->last->high;
+        return NOC_OK;
+    }
     bar->low = bar->logarithmic ? round_down(least) : 0;
     bar->high = most > 0 ? round_up(most) : 1;
     if (!(bar->high > bar->low))
@@ -95,13 +110,10 @@ static noc_status find_ends(const noc_channel *c, const noc_channel_params *p, c
 }
 
 static noc_status check_isolines(const noc_channel *c, const noc_channel_params *p, noc_log *log) {
-    int n = p->isolines ? p->isoline_count : 0;
-    bool good = n >= 0 && n <= NOC_ISOLINES && p->round_isolines >= 0 && p->round_isolines <= NOC_ISOLINES;
-    for (int i = 0; good && i < n; i++)
-        good = isfinite(p->isolines[i]) && p->isolines[i] > 0 && (!i || p->isolines[i] > p->isolines[i - 1]);
-    return good ? NOC_OK
-                : noc_error(log, NOC_ERR_ARGUMENT, "%s: isolines are at most %d numbers above 0, rising", c->name,
-                            NOC_ISOLINES);
+    return isolines_good(&p->isolines)
+               ? NOC_OK
+               : noc_error(log, NOC_ERR_ARGUMENT, "%s: isolines are at most %d numbers above 0, rising", c->name,
+                           NOC_ISOLINES);
 }
 
 static noc_status make_bar(legend *l, const noc_channel_params *p, noc_log *log) {
@@ -109,15 +121,14 @@ static noc_status make_bar(legend *l, const noc_channel_params *p, noc_log *log)
     noc_status status = check_isolines(l->channel, p, log);
     if (status)
         return status;
-    bar->map = colormap_sequential();
+    bar->map = colormap_of(COLORMAP_SEQUENTIAL);
     bar->title = l->channel->title;
     bar->lines = l->lines;
-    bar->line_count = p->isolines ? (size_t)p->isoline_count : 0;
-    if (bar->line_count)
-        memcpy(l->lines, p->isolines, bar->line_count * sizeof(double));
+    bar->line_count = (size_t)p->isolines.count;
+    memcpy(l->lines, p->isolines.value, bar->line_count * sizeof(double));
     status = find_ends(l->channel, p, bar, log);
-    if (!status && !p->isolines && p->round_isolines) {
-        size_t n = colorbar_ticks(bar, l->lines, (size_t)NOC_MAX(p->round_isolines, 2));
+    if (!status && !p->isolines.count && p->isolines.round) {
+        size_t n = colorbar_ticks(bar, l->lines, (size_t)NOC_MAX(p->isolines.round, 2));
         bool first = n && !(l->lines[0] > 0); /* nothing passes 0 */
         memmove(l->lines, l->lines + first, (n - first) * sizeof(double));
         bar->line_count = n - first;
@@ -147,7 +158,7 @@ noc_status noc_channel_bar(const noc_channel *channel, const noc_channel_params 
 
 void noc_bar_colour(double at, uint8_t rgb[3]) {
     if (rgb)
-        memcpy(rgb, colormap_at(colormap_sequential(), at), 3);
+        memcpy(rgb, colormap_at(colormap_of(COLORMAP_SEQUENTIAL), at), 3);
 }
 
 /* ---- names ---- */

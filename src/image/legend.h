@@ -32,9 +32,13 @@ void legend_free(legend *l);
 /* Vectors that have a unit are no directions: the largest x or y that is shown; 0: they are directions. */
 double legend_reach(const noc_channel *c);
 
+/* Does a bar keep the ends of the picture before, when the numbers now reach from least to most? */
+bool legend_holds(const noc_bar *last, bool logarithmic, double least, double most);
+
 extern const uint8_t legend_ground[3], legend_none[3]; /* behind it; of pixels without a value */
 
 /* isolines.c: lines and their values over the channel's picture, whose first pixel is at x in the canvas. */
+bool isolines_good(const noc_isolines *lines);
 noc_status isolines_draw(const legend *l, canvas *c, int x, noc_log *log);
 
 #endif

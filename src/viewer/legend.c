@@ -72,21 +72,35 @@ static json_t *hex(const uint8_t rgb[3]) {
     return json_string(text);
 }
 
+static void set_bar(json_t *to, const noc_bar *bar, void (*colour)(double at, uint8_t rgb[3])) {
+    json_t *colours = json_array(), *lines = json_array();
+    for (int i = 0; i < STEPS; i++) {
+        uint8_t rgb[3];
+        colour((double)i / (STEPS - 1), rgb);
+        json_array_append_new(colours, hex(rgb));
+    }
+    for (int i = 0; i < bar->isoline_count; i++)
+        json_array_append_new(lines, json_real(bar->isolines[i]));
+    json_object_set_new(to, "low", json_real(bar->low));
+    json_object_set_new(to, "high", json_real(bar->high));
+    json_object_set_new(to, "log", json_boolean(bar->logarithmic));
+    json_object_set_new(to, "colours", colours);
+    json_object_set_new(to, "isolines", lines);
+}
+
 static bool add_bar(json_t *to, const noc_channel *channel, const noc_channel_params *params, noc_log *log) {
     noc_bar bar;
     if (noc_channel_bar(channel, params, &bar, log))
         return false;
-    json_t *colours = json_array();
-    for (int i = 0; i < STEPS; i++) {
-        uint8_t rgb[3];
-        noc_bar_colour((double)i / (STEPS - 1), rgb);
-        json_array_append_new(colours, hex(rgb));
-    }
-    json_object_set_new(to, "low", json_real(bar.low));
-    json_object_set_new(to, "high", json_real(bar.high));
-    json_object_set_new(to, "log", json_boolean(bar.logarithmic));
-    json_object_set_new(to, "colours", colours);
+    set_bar(to, &bar, noc_bar_colour);
     return true;
+}
+
+json_t *legend_of_difference(const noc_bar *bar) {
+    json_t *legend = json_pack("{s:s, s:s}", "title", "difference: this - reference", "unit", "cd/m\u00b2");
+    if (legend)
+        set_bar(legend, bar, noc_difference_colour);
+    return legend;
 }
 
 static void add_label(json_t *to, const noc_channel *channel, uint32_t number, const char *name) {

@@ -20,5 +20,6 @@ bool legend_name_lights(legend_names *names, noc_channel *channel, const noc_sce
 
 /* `legend` of stats, as docs/viewer-protocol.md has it. NULL: no memory, or what the params say cannot be. */
 json_t *legend_of(const noc_channel *channel, const noc_channel_params *params, noc_log *log);
+json_t *legend_of_difference(const noc_bar *bar); /* NULL: no memory */
 
 #endif

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FRAMES = 256 };
+enum { FRAMES = 256, TEXT = 30 * NOC_ISOLINES };
 
 #define L look
 static const noc_option own_options[] = {
@@ -18,19 +18,19 @@ static const noc_option own_options[] = {
       "moving pictures are calm: for the eye alone, not in figures or files" },
     { "show-scale", "Mode", NOC_OPTION_CHOICE, offsetof(L, channel.scale), 0, 0, "auto|linear|log", "",
       "steps of the colour bar; auto: as suits the numbers" }, /* by noc_bar_scale */
-    { "isolines", "Mode", NOC_OPTION_INT, offsetof(L, channel.round_isolines), 0, NOC_ISOLINES, NULL, "",
-      "lines at about so many round values; 0 = none" },
     { NULL },
 };
 
 /* What has no row in a table of the library: the mode, and what says two fields at once. */
-typedef enum extra { EXTRA_SHOW, EXTRA_RANGE, EXTRA_EXPOSURE, EXTRA_COUNT } extra;
+typedef enum extra { EXTRA_SHOW, EXTRA_RANGE, EXTRA_ISOLINES, EXTRA_EXPOSURE, EXTRA_COUNT } extra;
 static const struct {
     const char *name, *group, *kind, *unit, *help;
 } extras[EXTRA_COUNT] = {
     [EXTRA_SHOW] = { "show", "Mode", "choice", "", "what is shown: the picture, or numbers of its pixels in colours" },
     [EXTRA_RANGE] = { "show-range", "Mode", "text", "LOW,HIGH",
                       "ends of the colour bar, or auto: found from the numbers" },
+    [EXTRA_ISOLINES] = { "isolines", "Mode", "text", "LIST",
+                         "lines at values, 5,7.5,10 (one: 5,), or N of them at round ones; 0 = none" },
     [EXTRA_EXPOSURE] = { "exposure", "Display", "text", "EV",
                          "auto, or EV100 of -30 to 30: one more is half as bright" },
 };
@@ -82,7 +82,12 @@ static int differences(const noc_render_params *a, const noc_render_params *b) {
 }
 
 look look_default(const viewer_source *source) {
-    look l = { .render = source->render, .display = source->display, .smooth = true, .frames = FRAMES };
+    look l = { .render = source->render,
+               .display = source->display,
+               .channel = source->channel,
+               .show = source->show,
+               .smooth = true,
+               .frames = FRAMES };
     int fewest = -1;
     for (int preset = NOC_PRESET_STILL; preset <= NOC_PRESET_INTERACTIVE; preset++) {
         noc_render_params p = source->render;
@@ -107,6 +112,7 @@ static int get_extra(const look *l, extra which, char *text, size_t size) {
         if (l->display.auto_exposure)
             return snprintf(text, size, "auto");
         return noc_option_get(&number, &l->display.ev100, text, size);
+    case EXTRA_ISOLINES: return noc_isolines_text(&l->channel.isolines, text, size);
     default: break;
     }
     if (!(l->channel.low < l->channel.high))
@@ -153,6 +159,11 @@ static bool set_extra(look *l, extra which, const char *value, char *why, size_t
             return viewer_wrong(why, size, "exposure: \"%.60s\" is neither auto nor an EV100 of -30 to 30", value);
         l->display.ev100 = ev100;
         return true;
+    case EXTRA_ISOLINES:
+        return noc_isolines_parse(value, &l->channel.isolines) ||
+               viewer_wrong(why, size,
+                            "isolines: \"%.60s\" is neither rising values, 1,2,5, nor a number of lines, 0 to %d",
+                            value, NOC_ISOLINES);
     default: break;
     }
     if (!automatic && (!noc_text_numbers(value, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
@@ -186,7 +197,7 @@ static bool set(look *l, const char *name, const char *value, char *why, size_t 
     return true;
 }
 
-static bool has_bar(const look *l) {
+bool look_has_bar(const look *l) {
     noc_aov_info info = noc_aov_get_info((noc_aov)(l->show - 1));
     return l->show && info.scale != NOC_CHANNEL_LABELS && info.components == 1;
 }
@@ -196,7 +207,7 @@ static bool begins_at_nothing(const look *l) {
     noc_aov_info info = noc_aov_get_info((noc_aov)(l->show - 1));
     bool logarithmic =
         l->channel.scale == NOC_BAR_OF_CHANNEL ? info.scale == NOC_CHANNEL_LOG : l->channel.scale == NOC_BAR_LOG;
-    return has_bar(l) && logarithmic && l->channel.low < l->channel.high && !(l->channel.low > 0);
+    return look_has_bar(l) && logarithmic && l->channel.low < l->channel.high && !(l->channel.low > 0);
 }
 
 bool look_set(look *l, const char *name, const char *value, char *why, size_t size) {
@@ -225,7 +236,7 @@ static json_t *choices_of_show(void) {
 }
 
 static void add_extra(json_t *list, const look *begin, extra which) {
-    char value[100];
+    char value[TEXT];
     get_extra(begin, which, value, sizeof(value));
     json_t *row = json_pack("{ss ss ss ss ss ss}", "name", extras[which].name, "group", extras[which].group, "kind",
                             extras[which].kind, "unit", extras[which].unit, "help", extras[which].help, "value", value);
@@ -263,7 +274,7 @@ json_t *look_modes(void) {
 
 json_t *look_values(const look *l) {
     table tables[TABLES];
-    char text[200];
+    char text[TEXT];
     json_t *values = json_object();
     list_tables(tables);
     for (int which = 0; which < EXTRA_COUNT; which++) {
@@ -299,7 +310,7 @@ json_t *look_idle(const look *l, bool has_map) {
     }
     if (l->show)
         json_object_set_new(idle, "exposure", json_string("numbers in colours have no exposure and no tone map"));
-    for (const char *const *name = of_bars; *name && !has_bar(l); name++)
+    for (const char *const *name = of_bars; *name && !look_has_bar(l); name++)
         json_object_set_new(idle, *name, json_string("what is shown has no colour bar"));
     if (!l->render.accumulate)
         json_object_set_new(idle, "frames", json_string("it needs accumulate true, not false"));
@@ -325,13 +336,13 @@ static void begin_render(const noc_recipe *recipe, int preset, noc_render_params
 }
 
 static void add_mode(words *list, const look *l) {
-    char text[100];
+    char text[TEXT];
     if (!l->show)
         return;
     words_add(list, "--show");
     words_add(list, noc_aov_name((noc_aov)(l->show - 1)));
     get_extra(l, EXTRA_RANGE, text, sizeof(text));
-    if (!has_bar(l))
+    if (!look_has_bar(l))
         return;
     if (strcmp(text, "auto")) {
         words_add(list, "--show-range");
@@ -341,8 +352,8 @@ static void add_mode(words *list, const look *l) {
         words_add(list, "--show-scale");
         words_add(list, l->channel.scale == NOC_BAR_LOG ? "log" : "linear");
     }
-    if (l->channel.round_isolines) {
-        snprintf(text, sizeof(text), "%d", l->channel.round_isolines);
+    get_extra(l, EXTRA_ISOLINES, text, sizeof(text));
+    if (strcmp(text, "0")) {
         words_add(list, "--isolines");
         words_add(list, text);
     }

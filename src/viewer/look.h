@@ -34,6 +34,7 @@ bool look_set(look *look, const char *name, const char *value, char *why, size_t
 /* The text of an option's value; the length, as snprintf has it. -1: there is no such option. */
 int look_get(const look *look, const char *name, char *text, size_t size);
 
+bool look_has_bar(const look *look); /* it shows numbers on a colour bar */
 /* What a frame of that size is rendered with. */
 noc_render_params look_params(const look *look, int width, int height);
 /* The words that say the look beside `command`, of which the recipe and the program's defaults have their part: options

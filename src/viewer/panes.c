@@ -1,6 +1,7 @@
 #include "viewer/panes.h"
 
 #include "viewer/legend.h"
+#include "viewer/option.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -75,10 +76,14 @@ noc_status panes_set_layout(panes *p, wire_layout layout) {
             if (!p->pane[i].view)
                 return NOC_ERR_MEMORY;
         }
+        if (p->layout != layout)
+            p->pane[i].bar = i && viewed ? p->pane[0].bar : i ? (noc_bar){ 0 } : p->pane[0].bar;
         if (i && p->layout != layout)
             p->pane[i].look = p->pane[0].look;
-        if (layout == WIRE_METHODS && p->layout != layout)
+        if (layout == WIRE_METHODS && p->layout != layout) {
             set_method(&p->pane[i].look, methods[i][0], methods[i][1]);
+            p->pane[i].look.smooth = false; /* what methods make of it is compared */
+        }
         p->pane[i].shown = 0;
     }
     if (layout == WIRE_DIFFERENCE)
@@ -96,6 +101,7 @@ static panes_need need_of(const look *before, const look *after) {
 }
 
 bool panes_set(panes *p, int which, const char *name, const char *value, panes_need *need, char *why, size_t size) {
+    static const char *const of_bars[] = { "show", "show-range", "show-scale", "isolines" }; /* it is found anew */
     *need = PANES_PUBLISH;
     if (which >= p->count) {
         snprintf(why, size, "there is no pane %d", which);
@@ -105,6 +111,8 @@ bool panes_set(panes *p, int which, const char *name, const char *value, panes_n
         look before = p->pane[i].look;
         if (!look_set(&p->pane[i].look, name, value, why, size))
             return false;
+        if (viewer_among(name, of_bars, sizeof(of_bars) / sizeof(*of_bars)))
+            p->pane[i].bar = (noc_bar){ 0 };
         panes_need now = need_of(&before, &p->pane[i].look);
         *need = now > *need ? now : *need;
     }
@@ -140,6 +148,9 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
     params.aovs |= varies ? 1u << NOC_AOV_VARIANCE : calm && !rests ? NOC_SMOOTH_AOVS : 0;
     uint64_t change = p->change;
     noc_status status = noc_view_render(to->view, camera, &params, progress);
+    noc_view_get_stats(to->view, &to->stats);
+    if (!to->stats.frames) /* what was broken off has taken the picture before it along */
+        to->shown = 0;
     if (status)
         return status;
     to->varies = varies;
@@ -149,7 +160,6 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
     to->width = width;
     to->height = height;
     to->shown = change;
-    noc_view_get_stats(to->view, &to->stats);
     return NOC_OK;
 }
 
@@ -185,18 +195,38 @@ static noc_status take(panes *p, uint8_t *rgb, const wire_head *head) {
     return room ? NOC_OK : NOC_ERR_MEMORY;
 }
 
-/* A coarse picture is narrower than its legend, and stands in the middle above it: the legend goes. */
-static void crop(uint8_t *rgb, int width, int height, wire_head *head) {
-    size_t row = (size_t)head->width * 3, left = (size_t)((head->width - width) / 2) * 3;
-    for (int y = 0; y < height; y++)
-        memmove(rgb + (size_t)y * (size_t)width * 3, rgb + (size_t)y * row + left, (size_t)width * 3);
-    head->width = width;
-    head->height = height;
-}
-
 static bool shows_lights(const look *l) {
     noc_aov aov = (noc_aov)(l->show - 1);
     return aov == NOC_AOV_INFLUENTIAL || aov == NOC_AOV_RUNNER_UP || aov == NOC_AOV_LIGHT;
+}
+
+/* The first pane whose bar is found as that of `which`: it finds it for both. */
+static int finds_bar(const panes *p, int which) {
+    const look *l = &p->pane[which].look;
+    for (int i = 0; i < which; i++) {
+        const look *other = &p->pane[i].look;
+        if (p->pane[i].view && other->show == l->show && other->channel.scale == l->channel.scale &&
+            other->channel.low == other->channel.high && p->pane[i].bar.high > p->pane[i].bar.low)
+            return i;
+    }
+    return which;
+}
+
+/* Ends that are found are kept as long as they fit, and are the same in all panes: a colour means one thing. */
+static noc_status settle_bar(panes *p, int which, const noc_channel *channel, noc_channel_params *params) {
+    pane *of = &p->pane[which];
+    int from = finds_bar(p, which);
+    params->last = &of->bar;
+    noc_bar bar = p->pane[from].bar;
+    if (from == which || params->low != params->high) {
+        noc_status status = noc_channel_bar(channel, params, &bar, p->log);
+        if (status)
+            return status;
+    }
+    of->bar = bar;
+    params->low = bar.low;
+    params->high = bar.high;
+    return NOC_OK;
 }
 
 /* Numbers in colours. */
@@ -207,8 +237,11 @@ static noc_status draw_numbers(panes *p, int which, wire_head *head) {
     params.part = NOC_CHANNEL_PICTURE;
     noc_channel *channel = noc_view_aov(of->view, (noc_aov)(of->look.show - 1));
     uint8_t *rgb = NULL;
-    noc_status status =
-        channel ? noc_channel_to_srgb8(channel, &params, &rgb, &head->width, &head->height, p->log) : NOC_ERR_MEMORY;
+    noc_status status = channel ? NOC_OK : NOC_ERR_MEMORY;
+    if (!status && look_has_bar(&of->look))
+        status = settle_bar(p, which, channel, &params);
+    if (!status)
+        status = noc_channel_to_srgb8(channel, &params, &rgb, &head->width, &head->height, p->log);
     legend_names names;
     if (!status && shows_lights(&of->look) && !legend_name_lights(&names, channel, world_scene(p->world)))
         status = NOC_ERR_MEMORY;
@@ -248,18 +281,27 @@ static noc_status draw(panes *p, int which, double now, wire_head *head) {
 
 /* Of two pictures of the same size: while one has its first frame of another size, there is none. */
 static noc_status draw_difference(panes *p, wire_head *head) {
-    if (p->pane[0].width != p->pane[1].width || p->pane[0].height != p->pane[1].height)
+    pane *to = &p->pane[2];
+    if (p->pane[0].width != p->pane[1].width || p->pane[0].height != p->pane[1].height || !p->pane[0].stats.frames ||
+        !p->pane[1].stats.frames)
         return NOC_ERR_CANCELLED;
     noc_image *x = noc_view_image(p->pane[0].view), *r = noc_view_image(p->pane[1].view);
     uint8_t *rgb = NULL;
+    noc_difference_params params = { .last = &to->bar, .part = NOC_CHANNEL_PICTURE };
+    noc_bar bar;
     noc_status status = x && r ? NOC_OK : NOC_ERR_MEMORY;
     if (!status)
-        status = noc_image_compare(x, r, NULL, &p->pane[2].compared, p->log);
+        status = noc_image_compare(x, r, NULL, &to->compared, p->log);
     if (!status)
-        status = noc_image_difference(x, r, NULL, &rgb, &head->width, &head->height, p->log);
-    if (!status && head->width > x->width)
-        crop(rgb, x->width, x->height, head);
+        status = noc_image_difference_bar(x, r, &params, &bar, p->log);
+    if (!status) {
+        to->bar = bar;
+        params.limit = bar.high;
+        status = noc_image_difference(x, r, &params, &rgb, &head->width, &head->height, p->log);
+    }
     status = status ? status : take(p, rgb, head);
+    json_decref(to->legend);
+    to->legend = status ? NULL : legend_of_difference(&bar);
     noc_image_destroy(x);
     noc_image_destroy(r);
     head->flags |= WIRE_LEGEND;
@@ -293,7 +335,8 @@ static void set_number(json_t *to, const char *key, double value) {
 
 static char *stats_of(panes *p, int which, const panes_picture *what, const wire_head *head) {
     const pane *of = &p->pane[which];
-    const noc_frame_stats *f = &p->pane[of->view ? which : 0].stats;
+    bool fewer = !of->view && p->pane[1].stats.frames < p->pane[0].stats.frames; /* a difference has those of both */
+    const noc_frame_stats *f = &p->pane[of->view ? which : fewer].stats;
     json_t *m = wire_begin("stats");
     json_object_set_new(m, "pane", json_integer(which));
     json_object_set_new(m, "frames", json_integer((json_int_t)f->frames));
@@ -312,7 +355,7 @@ static char *stats_of(panes *p, int which, const panes_picture *what, const wire
         set_number(m, "relmse", of->compared.all.relmse);
         set_number(m, "bias", of->compared.all.bias);
     }
-    if (of->legend && of->look.show)
+    if (of->legend && (of->look.show || !of->view))
         json_object_set(m, "legend", of->legend);
     return wire_end(m);
 }
@@ -371,7 +414,7 @@ static const char *caption_of(const panes *p, int which) {
         return names[which];
     if (p->layout == WIRE_DIFFERENCE)
         return which == 2 ? "difference" : which ? "reference" : "this";
-    return p->layout == WIRE_DIVIDER ? which ? "right" : "left" : "";
+    return p->layout == WIRE_DIVIDER ? which ? "B" : "A" : "";
 }
 
 json_t *panes_state(const panes *p) {

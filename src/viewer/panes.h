@@ -20,6 +20,7 @@ typedef struct pane {
     noc_frame_stats stats;
     noc_comparison compared; /* of a difference */
     double ev100;            /* of its newest picture; NaN: that is of numbers */
+    noc_bar bar;             /* of its newest picture of numbers, or difference; high 0: there was none */
     json_t *legend;          /* of its newest picture, where that is of numbers; NULL: none */
 } pane;
 

@@ -43,6 +43,8 @@ typedef struct viewer_source {
     noc_camera_params camera;        /* where the first picture is seen from */
     noc_render_params render;        /* what looks begin with */
     noc_display_params display;
+    int show; /* the mode that they begin with: 0 is the picture, else 1 + noc_aov */
+    noc_channel_params channel;
     int threads; /* of the device; 0: one a core */
 } viewer_source;
 

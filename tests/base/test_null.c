@@ -42,6 +42,12 @@ static noc_camera camera;
       noc_image_difference(NULL, image, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)  \
     P(0, noc_image_difference(image, image, NULL, NULL, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)           \
     P(0, noc_image_difference(image, image, NULL, &(uint8_t *){ 0 }, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)            \
+    P(0, noc_image_difference_bar(NULL, image, NULL, &(noc_bar){ 0 }, NULL) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_image_difference_bar(image, image, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                 \
+    P(noc_difference_colour(0, NULL), true)                                                                            \
+    P(0, !noc_isolines_parse(NULL, &(noc_isolines){ 0 }))                                                              \
+    P(0, !noc_isolines_parse("5,", NULL))                                                                              \
+    P(0, noc_isolines_text(NULL, NULL, 0) == -1)                                                                       \
     P(noc_channel_destroy(NULL), true)                                                                                 \
     P(0, noc_channel_to_srgb8(NULL, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)      \
     P(0, noc_channel_to_srgb8(channel, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                              \

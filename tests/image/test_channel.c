@@ -182,13 +182,12 @@ static void isolines(void **state) {
     noc_channel *c = noc_channel_create(SIDE, SIDE, 1, NULL);
     assert_non_null(c);
     c->name = c->title = "slope";
-    static const double lines[] = { 20, 40, 400 };
     uint32_t h = 1;
     for (int i = 0; i < SIDE * SIDE; i++) { /* 0.25 a pixel to the right, and a step of 100 below the middle */
         h = h * 1664525u + 1013904223u;
         c->value[i] = 0.25f * (float)(i % SIDE) + (i / SIDE < SIDE / 2 ? 0 : 100) + 0.05f * (float)(h >> 24) / 255;
     }
-    noc_channel_params p = { .isolines = lines, .isoline_count = 3, .part = NOC_CHANNEL_PICTURE };
+    noc_channel_params p = { .isolines = { { 20, 40, 400 }, .count = 3 }, .part = NOC_CHANNEL_PICTURE };
     uint8_t *rgb[2];
     int width, height;
     assert_int_equal(noc_channel_to_srgb8(c, &p, &rgb[0], &width, &height, NULL), NOC_OK);
@@ -216,9 +215,81 @@ static void isolines(void **state) {
     assert_true(stray < 400); /* the two values that are written beside them */
     free(rgb[0]);
     free(rgb[1]);
-    assert_int_equal(noc_channel_bar(c, &(noc_channel_params){ .round_isolines = 5 }, &bar, NULL), NOC_OK);
+    assert_int_equal(noc_channel_bar(c, &(noc_channel_params){ .isolines.round = 5 }, &bar, NULL), NOC_OK);
     assert_true(bar.isoline_count >= 2 && bar.isoline_count <= 5 && bar.isolines[0] > 0);
     noc_channel_destroy(c);
+}
+
+/* Words of isolines: what is read is written so that the same is read again; what is no such words changes nothing. */
+static void isolines_in_words(void **state) {
+    static const struct {
+        const char *text, *written;
+        int count, round;
+    } good[] = { { "5,7.5,10,20", "5,7.5,10,20", 4, 0 },
+                 { "5,", "5,", 1, 0 },
+                 { "6", "6", 0, 6 },
+                 { "0", "0", 0, 0 },
+                 { "0.1,", "0.1,", 1, 0 },
+                 { "1,2,", "1,2", 2, 0 },
+                 { "1e-3,1e3", "0.001,1000", 2, 0 } };
+    static const char *const wrong[] = { "",    ",",  "5,3", "5,5", "0,1",  "-1,1",  "-1",
+                                         "2.5", "33", "lx",  "1;2", "1,,2", "nan,1", "1,inf" };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(good); i++) {
+        noc_isolines lines;
+        char text[200];
+        assert_true(noc_isolines_parse(good[i].text, &lines));
+        assert_true(lines.count == good[i].count && lines.round == good[i].round);
+        assert_int_equal(noc_isolines_text(&lines, text, sizeof(text)), strlen(good[i].written));
+        assert_string_equal(text, good[i].written);
+    }
+    for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
+        noc_isolines lines = { { 7 }, .count = 1 };
+        if (noc_isolines_parse(wrong[i], &lines))
+            fail_msg("\"%s\" was read", wrong[i]);
+        assert_true(lines.count == 1 && lines.value[0] == 7);
+    }
+    char many[40 * NOC_ISOLINES] = "";
+    noc_isolines all = { .count = NOC_ISOLINES }, read;
+    for (int i = 0; i < NOC_ISOLINES; i++)
+        all.value[i] = 1e-5 * (i + 1) + 1.0 / 3e7;
+    assert_true(noc_isolines_text(&all, many, sizeof(many)) < (int)sizeof(many));
+    assert_true(noc_isolines_parse(many, &read) && read.count == NOC_ISOLINES);
+    strcat(many, ",9");
+    assert_false(noc_isolines_parse(many, &read));
+}
+
+/* Ends of a bar that follows numbers: they stay through noise, and go along when the numbers leave them. */
+static void bars_settle(void **state) {
+    (void)state;
+    for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+        noc_bar last = { .low = 0 }, now;
+        noc_channel_params p = { .last = &last };
+        static const float highest[] = { 90, 104, 93, 118, 40, 101 }; /* of numbers from 0.9 up */
+        for (size_t i = 0; i < NOC_COUNT(highest); i++) {
+            noc_channel *c =
+                ramp(logarithmic ? NOC_CHANNEL_LOG : NOC_CHANNEL_LINEAR, 0.9f, (highest[i] - 0.9f) / (W - 1));
+            assert_int_equal(noc_channel_bar(c, &p, &now, NULL), NOC_OK);
+            if (i)
+                assert_true(now.low == last.low && now.high == last.high);
+            shown s;
+            assert_int_equal(noc_channel_to_srgb8(c, &p, &s.rgb, &s.width, &s.height, NULL), NOC_OK);
+            free(s.rgb);
+            last = now;
+            noc_channel_destroy(c);
+        }
+        static const float other[] = { 400, 20 };
+        for (size_t i = 0; i < 2; i++) {
+            noc_channel *c =
+                ramp(logarithmic ? NOC_CHANNEL_LOG : NOC_CHANNEL_LINEAR, 0.9f, (other[i] - 0.9f) / (W - 1));
+            noc_bar anew;
+            assert_int_equal(noc_channel_bar(c, &p, &now, NULL), NOC_OK);
+            assert_int_equal(noc_channel_bar(c, NULL, &anew, NULL), NOC_OK);
+            assert_true(now.high == anew.high && now.low == anew.low && now.high != last.high);
+            last = now;
+            noc_channel_destroy(c);
+        }
+    }
 }
 
 /* Names of some labels alone: those stand in the legend, in the colour that they would have without. */
@@ -332,13 +403,12 @@ static void what_cannot_be(void **state) {
     noc_log *log = quiet();
     noc_channel *c = ramp(NOC_CHANNEL_LOG, 1, 1);
     static const noc_channel_params wrong[] = { { 2, 1 }, { 0, 1 }, { -1, 1 }, { 1, INFINITY }, { NAN, 1 } };
-    static const double falling[] = { 2, 1 }, zero[] = { 0 };
-    static const noc_channel_params no_lines[] = { { .isolines = falling, .isoline_count = 2 },
-                                                   { .isolines = zero, .isoline_count = 1 },
-                                                   { .isolines = falling, .isoline_count = -1 },
-                                                   { .isolines = falling, .isoline_count = NOC_ISOLINES + 1 },
-                                                   { .round_isolines = -1 },
-                                                   { .round_isolines = NOC_ISOLINES + 1 } };
+    static const noc_channel_params no_lines[] = { { .isolines = { { 2, 1 }, .count = 2 } },
+                                                   { .isolines = { { 0 }, .count = 1 } },
+                                                   { .isolines = { { 1, 2 }, .count = -1 } },
+                                                   { .isolines = { { 1, 2 }, .count = NOC_ISOLINES + 1 } },
+                                                   { .isolines.round = -1 },
+                                                   { .isolines.round = NOC_ISOLINES + 1 } };
     for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
         uint8_t *rgb = NULL;
         int width, height;
@@ -376,6 +446,8 @@ int main(void) {
         cmocka_unit_test(parts),
         cmocka_unit_test(other_scales),
         cmocka_unit_test(isolines),
+        cmocka_unit_test(isolines_in_words),
+        cmocka_unit_test(bars_settle),
         cmocka_unit_test(files),
         cmocka_unit_test(what_cannot_be),
     };

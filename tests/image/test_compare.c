@@ -347,6 +347,52 @@ static void difference_picture(void **state) {
     noc_image_destroy(r);
 }
 
+/* Picture and legend apart are the whole, and the bar tells its ends and colours; ends stay as long as they fit. */
+static void difference_parts(void **state) {
+    noc_image *x = noc_image_create(1300, 3, NULL), *r = noc_image_create(1300, 3, NULL);
+    static const noc_channel_part parts[] = { NOC_CHANNEL_WHOLE, NOC_CHANNEL_PICTURE, NOC_CHANNEL_LEGEND };
+    uint8_t *out[3];
+    int width[3], height[3];
+    noc_bar bar, next;
+    int errors = 0;
+    (void)state;
+    for (int i = 0; i < 3 * 3 * 1300; i++) {
+        x->rgb[i] = (float)(i / 3 % 1300);
+        r->rgb[i] = 650;
+    }
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(noc_image_difference(x, r, &(noc_difference_params){ .part = parts[i] }, &out[i], &width[i],
+                                              &height[i], NULL),
+                         NOC_OK);
+    assert_true(height[1] == 3 && width[0] == 1300 && height[0] == 3 + height[2]);
+    assert_memory_equal(out[0], out[1], (size_t)3 * 3 * 1300);
+    assert_memory_equal(out[0] + (size_t)3 * 3 * 1300, out[2], (size_t)3 * 1300 * (size_t)height[2]);
+    assert_int_equal(noc_image_difference_bar(x, r, NULL, &bar, NULL), NOC_OK);
+    assert_true(bar.low == -bar.high && bar.high > 600 && bar.high <= 650 && bar.tick_count > 2 && !bar.logarithmic);
+    for (int i = 0; i < 1300; i += 77) {
+        uint8_t rgb[3];
+        noc_difference_colour(0.5 + 0.5 * (i - 650) / bar.high, rgb);
+        for (int k = 0; k < 3; k++)
+            assert_true(abs(rgb[k] - out[0][3 * i + k]) < 3);
+    }
+    for (int i = 0; i < 3 * 3 * 1300; i++)
+        r->rgb[i] = 500;
+    assert_int_equal(noc_image_difference_bar(x, r, &(noc_difference_params){ .last = &bar }, &next, NULL), NOC_OK);
+    assert_true(next.high == bar.high); /* it now is 786 */
+    assert_int_equal(noc_image_difference_bar(x, r, &(noc_difference_params){ .limit = 20 }, &next, NULL), NOC_OK);
+    assert_true(next.high == 20 && next.low == -20);
+    assert_int_equal(noc_image_difference_bar(x, r, &(noc_difference_params){ .last = &next }, &next, NULL), NOC_OK);
+    assert_true(next.high > 700);
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = quiet, .user = &errors });
+    assert_int_equal(noc_image_difference_bar(x, r, &(noc_difference_params){ .limit = -1 }, &next, log),
+                     NOC_ERR_ARGUMENT);
+    noc_log_destroy(log);
+    for (int i = 0; i < 3; i++)
+        free(out[i]);
+    noc_image_destroy(x);
+    noc_image_destroy(r);
+}
+
 static void difference_of_tiny_and_equal_pictures(void **state) {
     (void)state;
     noc_image *a = noc_image_create(1, 1, log_);
@@ -377,6 +423,7 @@ int main(void) {
         cmocka_unit_test(ticks_are_round),
         cmocka_unit_test(text_is_drawn),
         cmocka_unit_test(difference_picture),
+        cmocka_unit_test(difference_parts),
         cmocka_unit_test(difference_of_tiny_and_equal_pictures),
     };
     return cmocka_run_group_tests_name("image compare", tests, set_up, tear_down);

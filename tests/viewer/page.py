@@ -214,6 +214,54 @@ class Tests:
         for _ in range(6):
             page.key('ArrowLeft')
         differs(page, before, 2)
+        page.press('#isolines')
+        page.evaluate("document.getElementById('isolines').select()")
+        page.type('7.5, 12,40')
+        page.key('Enter')
+        page.wait("viewer.state.panes[0].values.isolines === '7.5,12,40'")
+        assert '--isolines 7.5,12,40' in state(page, 'command')
+        shown = "[...document.querySelectorAll('#legend .ticks span')].map((one) => one.textContent).join(' ')"
+        page.wait(f"['7.5', '7.5 12', '7.5 12 40'].includes({shown})")
+        page.evaluate("viewer.set('isolines', '0')")
+        blur(page)
+        page.evaluate("document.querySelector('#modes button').click()")
+        page.wait("document.getElementById('legend').hidden")
+
+    def test_legends_make_room(self):
+        page = self.page
+        legend = "document.getElementById('legend').getBoundingClientRect()"
+
+        def at():
+            return page.evaluate(f'(({{ x, y }}) => [x, y])({legend})')
+
+        page.evaluate("document.querySelector('#modes button[data-name=depth]').click()")
+        page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        x, y = page.middle('#legend .band')
+        under = page.evaluate(f"document.elementFromPoint({x}, {y}).closest('#stage') !== null")
+        assert under, 'the legend takes clicks that are meant for the picture'
+        before, seen = at(), camera(page)
+        x, y = page.middle('#legend .title')
+        page.drag(x, y, x - 15, y - 80)
+        moved = at()
+        assert moved[1] < before[1] - 60 and moved[0] <= before[0], (before, moved)
+        assert far(camera(page)['target'], seen['target']) < 1e-9, 'what moves the legend turns the camera'
+        page.evaluate("document.querySelector('#legend .head button').focus()")
+        page.key('ArrowDown')
+        assert at()[1] > moved[1] + 5, (moved, at())
+        page.press('#legend .fold')
+        page.wait("document.querySelector('#legend .scale').offsetParent === null")
+        kept = at()
+        page.evaluate('location.reload()')
+        page.wait("globalThis.viewer?.state?.panes[0].values.show === 'depth'")
+        page.wait("!document.getElementById('legend').hidden")
+        page.wait("document.querySelector('#legend .scale').offsetParent === null")
+        assert far(at(), kept) < 3, (kept, at())
+        page.press('#legend .fold')
+        page.wait("document.querySelector('#legend .scale').offsetParent !== null")
+        page.evaluate("document.querySelector('#legend .head button').focus()")
+        for _ in range(10):
+            page.key('ArrowDown')
+        blur(page)
         page.evaluate("document.querySelector('#modes button').click()")
         page.wait("document.getElementById('legend').hidden")
 
@@ -273,6 +321,9 @@ class Tests:
         assert 20 < at < 32, at
         page.key('ArrowRight')
         assert page.evaluate("Number(document.querySelector('.divider').getAttribute('aria-valuenow'))") == at + 2
+        captions = page.evaluate("[...document.querySelectorAll('.caption')].map((one) => one.textContent)")
+        buttons = page.evaluate("[...document.querySelectorAll('.which button')].map((one) => one.textContent)")
+        assert captions == ['A', 'B'] and buttons == ['A', 'B', 'all'], (captions, buttons)
         page.evaluate('viewer.edit(0)')
 
     def test_compares(self):
@@ -281,8 +332,24 @@ class Tests:
         page.press('#layouts button[data-name=methods]')
         page.wait("document.querySelectorAll('.pane').length >= 4")
         page.wait("[...document.querySelectorAll('.picture')].every((one) => one.dataset.n)", 60)
+        captions = page.evaluate("[...document.querySelectorAll('.caption')].map((one) => one.innerText)")
+        assert len(set(captions)) == 6 and captions[-1] == 'ReSTIR' and all(captions), captions
+        assert page.evaluate("viewer.state.panes.every(({ values }) => values.smooth === 'false')")
         page.press('#layouts button[data-name=difference]')
         page.wait("[...document.querySelectorAll('.caption')].some((one) => one.textContent.includes('RMSE'))", 60)
+        assert page.evaluate("viewer.state.panes[0].values.smooth === 'true'")
+        page.wait("/early, after \\d+ frame/.test(document.querySelectorAll('.caption')[2].textContent)")
+        page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        low, high = page.evaluate('[viewer.stats[2].legend.low, viewer.stats[2].legend.high]')
+        assert low == -high and high > 0, (low, high)
+        assert page.evaluate("document.querySelector('#legend .handle').offsetParent === null")
+        narrow = opened(self.machine, self.served.link, width=390, height=844, phone=True)
+        narrow.evaluate("viewer.connection.send('layout', { name: 'difference' })")
+        narrow.wait("document.querySelectorAll('#legend .ticks span').length > 1", 60)
+        box = narrow.evaluate("(({ left, right, bottom }) => [left, right, innerHeight - bottom])"
+                              "(document.getElementById('legend').getBoundingClientRect())")
+        assert box[0] >= 0 and box[1] <= 390 and box[2] >= 0, box
+        narrow.close()
         page.press('#layouts button[data-name=single]')
         page.wait("document.querySelectorAll('.pane').length === 1")
         assert state(page, 'panes[0].values.method') == method, 'all methods have changed this look'

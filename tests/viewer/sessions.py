@@ -145,6 +145,75 @@ def test_layouts(p):
         if name == "difference":
             figures = said(c, "stats", lambda m: m["pane"] == 2)
             assert figures["rmse"] > 0 and 0.2 < figures["bias"] < 5, figures
+            legend = figures["legend"]
+            assert legend["low"] == -legend["high"] < 0 and len(legend["colours"]) == 17, legend
+            assert figures["frames"] >= 1, figures
+    c.close()
+
+
+def test_a_mode_that_changes_in_mid_frame(p):
+    """What only shows otherwise breaks a frame off, at times one of another size, which leaves no picture."""
+    c = enter(p, 1280, 720)
+    c.say("set", name="show", value="illuminance")
+    said(c, "state", lambda m: m["panes"][0]["values"]["show"] == "illuminance")
+    for n in range(1, 5):
+        c.say("input", n=n, turn=[0.01, 0])
+        c.wait_for(lambda m: isinstance(m, Picture) and m.input == n and not m.moving and m.width < 1280)
+        time.sleep(0.02) # the next one is larger, and on its way
+        c.say("set", name="isolines", value=("5,7.5,10,20", "0")[n % 2])
+        again = c.wait_for(lambda m: isinstance(m, Picture) or isinstance(m, dict) and m["t"] == "note")
+        assert isinstance(again, Picture), again
+    figures = said(c, "stats", lambda m: m.get("legend") and m["legend"]["isolines"] == [5, 7.5, 10, 20])
+    assert figures["legend"]["low"] <= 5 and figures["legend"]["high"] >= 20, figures["legend"]
+    c.say("set", name="isolines", value="20,10")
+    assert "isolines" in said(c, "note")["text"]
+    c.close()
+
+
+def test_panes_have_one_bar(p):
+    c = enter(p, 320, 180)
+    c.say("layout", name="divider")
+    c.say("set", pane=-1, name="show", value="illuminance")
+    c.say("set", pane=1, name="method", value="is")
+    said(c, "state", lambda m: m["panes"][1]["values"]["method"] == "is")
+    ends = {0: [], 1: []}
+    while min(map(len, ends.values())) < 6:
+        figures = said(c, "stats", lambda m: m.get("legend"))
+        ends[figures["pane"]].append((figures["legend"]["low"], figures["legend"]["high"]))
+    assert ends[0][-1] == ends[1][-1] and len(set(ends[0][4:])) == 1, ends
+    c.close()
+
+
+def test_a_mode_to_open_with(p):
+    q = Program(*CITY, "--show", "illuminance", "--show-range", "1,50", "--isolines", "5,10")
+    c = Client(q)
+    c.say("hello", width=160, height=90)
+    state = c.text_of("welcome")["state"]
+    values = state["panes"][0]["values"]
+    assert [values[name] for name in ("show", "show-range", "isolines")] == ["illuminance", "1,50", "5,10"], values
+    assert "--show illuminance --show-range 1,50 --isolines 5,10" in state["command"], state["command"]
+    legend = said(c, "stats", lambda m: m.get("legend"))["legend"]
+    assert (legend["low"], legend["high"], legend["isolines"]) == (1, 50, [5, 10]), legend
+    c.close()
+    q.end()
+    assert run("builtin:single", "--show", "class", "--isolines", "5", "--port", "0")[0] == 2
+
+
+def test_help_tells_what_it_begins_with(p):
+    c = enter(p, 160, 90)
+    look = {row["name"]: row for row in c.welcome["schema"]["look"]}
+    text = subprocess.run([os.environ["NOC_PROGRAM"], "help", "--markdown"], capture_output=True, text=True,
+                          check=True).stdout
+    section = text.split("\n## nocturne view ")[1].split("\n## ")[0]
+    compared = set()
+    for line in section.splitlines():
+        cells = [cell.strip() for cell in line.split("|")]
+        name = cells[1].strip("`").split()[0].lstrip("-").replace("[no-]", "") if len(cells) > 4 else ""
+        if name in look and look[name]["kind"] in ("int", "real", "choice", "bool") and cells[3]:
+            told = {"on": "true", "off": "false"}.get(cells[3], cells[3])
+            assert told == look[name]["value"], (name, told, look[name]["value"])
+            compared.add(name)
+    assert {"method", "preset", "history", "show", "draws"} <= compared and len(compared) > 30, compared
     c.close()
 
 

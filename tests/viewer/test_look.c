@@ -86,6 +86,9 @@ static void what_is_wrong_is_told(void **state) {
         { "show-range", "3", "show-range: \"3\" is neither auto nor LOW,HIGH" },
         { "show-range", "5,3", "the lower one first" },
         { "show-range", "-1,3", "show-range" },
+        { "isolines", "5,3", "isolines: \"5,3\" is neither rising values, 1,2,5, nor a number of lines, 0 to 32" },
+        { "isolines", "", "isolines" },
+        { "isolines", "33", "isolines" },
         { "exposure", "bright", "exposure: \"bright\" is neither auto nor an EV100 of -30 to 30" },
         { "exposure", "31", "exposure" },
         { "frames", "-1", "frames: \"-1\" is outside 0 to 1000000" },
@@ -106,6 +109,29 @@ static void set(look *l, const char *name, const char *value) {
     char why[300];
     if (!look_set(l, name, value, why, sizeof(why)))
         fail_msg("%s %s: %s", name, value, why);
+}
+
+static void assert_words(const look *l, const char *expected) {
+    size_t count;
+    char **list = look_words(l, NULL, false, &count), *line = list ? words_line(list, count) : NULL;
+    assert_non_null(line);
+    assert_string_equal(line, expected);
+    free(line);
+    words_free(list, count);
+}
+
+/* What the command line says of the mode, a viewer opens with. */
+static void a_mode_is_begun_with(void **state) {
+    viewer_source source = source_of(NOC_PRESET_STILL);
+    source.show = 1 + NOC_AOV_ILLUMINANCE;
+    source.channel = (noc_channel_params){ .low = 1, .high = 50, .scale = NOC_BAR_LOG };
+    assert_true(noc_isolines_parse("5,10", &source.channel.isolines));
+    const look begin = look_default(&source);
+    assert_words(&begin, "--show illuminance --show-range 1,50 --show-scale log --isolines 5,10");
+    json_t *values = look_values(&begin);
+    assert_string_equal(text_of(values, "show"), "illuminance");
+    assert_string_equal(text_of(values, "isolines"), "5,10");
+    json_decref(values);
 }
 
 static void a_frame_refuses_no_look(void **state) {
@@ -177,15 +203,6 @@ static void modes_are_the_views_of_render(void **state) {
     json_decref(modes);
 }
 
-static void assert_words(const look *l, const char *expected) {
-    size_t count;
-    char **list = look_words(l, NULL, false, &count), *line = list ? words_line(list, count) : NULL;
-    assert_non_null(line);
-    assert_string_equal(line, expected);
-    free(line);
-    words_free(list, count);
-}
-
 /* Of a look only what the program does not do by itself. */
 static void words_say_what_differs(void **state) {
     const viewer_source still = source_of(NOC_PRESET_STILL), moving = source_of(NOC_PRESET_INTERACTIVE);
@@ -209,6 +226,11 @@ static void words_say_what_differs(void **state) {
     set(&l, "show-scale", "linear");
     set(&l, "isolines", "5");
     assert_words(&l, "--show depth --show-range 1,200 --show-scale linear --isolines 5");
+    set(&l, "isolines", "5,7.5,10,20");
+    assert_words(&l, "--show depth --show-range 1,200 --show-scale linear --isolines 5,7.5,10,20");
+    set(&l, "isolines", "5,");
+    set(&l, "show", "luminance"); /* lines are kept, the range is not */
+    assert_words(&l, "--show luminance --isolines 5,");
     set(&l, "show", "class"); /* which has no bar */
     assert_words(&l, "--show class");
 }
@@ -240,6 +262,7 @@ int main(void) {
         cmocka_unit_test(a_frame_refuses_no_look), cmocka_unit_test(the_preset_sets_the_estimator),
         cmocka_unit_test(idle_options_say_why),    cmocka_unit_test(modes_are_the_views_of_render),
         cmocka_unit_test(words_say_what_differs),  cmocka_unit_test(words_are_quoted_for_a_shell),
+        cmocka_unit_test(a_mode_is_begun_with),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,7 @@ import { el, Choice, clamp } from './dom.js';
 
 const LAYOUTS = [
     ['single', 'One', 'one picture'],
-    ['divider', 'A|B', 'two looks, and a divider between them'],
+    ['divider', 'A|B', 'two looks, A and B, and a divider between them'],
     ['methods', 'Methods', 'all methods beside each other'],
     ['difference', 'Difference', 'a look, the reference, and their difference'],
 ];

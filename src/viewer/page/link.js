@@ -55,7 +55,10 @@ function restoreLook(app, pane, own) {
     if ((now?.show ?? 'picture') !== 'picture') app.set('show', 'picture', pane);
     const others = look.filter(({ name }) => name !== 'preset' && !MODE.includes(name));
     for (const option of [...look.filter(({ name }) => name === 'preset'), ...others]) say(option);
-    for (const name of MODE) if (own[name] !== undefined) app.set(name, own[name], pane);
+    for (const name of MODE) {
+        const value = own[name] ?? (name === 'show' ? app.option('show')?.value : undefined);
+        if (value !== undefined) app.set(name, value, pane);
+    }
 }
 
 // world: the settings of all clients, too; a link restores them, a reconnected client does not.

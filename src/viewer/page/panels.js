@@ -242,7 +242,7 @@ export class Settings {
     #which(count) {
         this.which.hidden = count < 2;
         if (count < 2) return;
-        const names = [...Array(count).keys()].map((i) => [i, count === 2 ? 'AB'[i] : String(i + 1)]);
+        const names = this.app.state.panes.map(({ caption }, i) => [i, caption]);
         this.which.replaceChildren(
             el('span', { text: 'Sets picture' }),
             ...[...names, [-1, 'all']].map(([pane, text]) =>

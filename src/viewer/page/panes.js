@@ -3,6 +3,7 @@ import { el, clamp, number } from './dom.js';
 import { project } from './camera.js';
 
 const MOST_PIXELS = 1920 * 1080; // of all panes together, asked for
+const ENOUGH = 64; // frames after which a difference is hardly noise any more
 
 export class Panes {
     panes = [];
@@ -147,6 +148,8 @@ export class Panes {
             if (stats?.rmse !== undefined) says.push(`RMSE ${number(stats.rmse)} cd/m²`);
             if (stats?.relmse !== undefined) says.push(`relMSE ${number(stats.relmse)}`);
             if (stats?.bias !== undefined) says.push(`bias ${number(stats.bias)} cd/m²`);
+            if (stats?.rmse !== undefined && stats.frames < ENOUGH)
+                says.push(`early, after ${stats.frames} ${stats.frames === 1 ? 'frame' : 'frames'}`);
             caption.textContent = this.panes.length > 1 ? says.filter((one) => one).join(' · ') : '';
             root.classList.toggle('edited', this.panes.length > 1 && this.app.editing === index);
         });
