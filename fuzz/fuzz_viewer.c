@@ -22,7 +22,10 @@ static void check_ask(const wire_ask *a) {
     FUZZ_REQUIRE(a->pane >= 0 && a->pane < WIRE_PANES);
     FUZZ_REQUIRE(a->x >= 0 && a->x <= 1 && a->y >= 0 && a->y <= 1);
     FUZZ_REQUIRE(all_within(a->rect, 4, 2) && a->points <= WIRE_POINTS && a->pairs <= WIRE_PAIRS);
-    FUZZ_REQUIRE(a->what != WIRE_REGION || a->has_rect || a->points >= 3 || a->object);
+    FUZZ_REQUIRE(a->what != WIRE_REGION || a->has_rect || a->points >= 3 || a->object || a->street);
+    FUZZ_REQUIRE(a->what != WIRE_FIND || (a->text && strlen(a->text) <= 4096));
+    FUZZ_REQUIRE(a->what != WIRE_NAME || a->has_light || a->has_at || a->object || a->street);
+    FUZZ_REQUIRE(all_within(a->at, 2, 1e7));
     FUZZ_REQUIRE(a->what != WIRE_ALIGN || (a->pairs >= 4 && a->aspect >= 0.01 && a->aspect <= 100));
     for (int i = 0; i < a->points; i++)
         FUZZ_REQUIRE(all_within(a->point[i], 2, 1e7));
@@ -46,7 +49,10 @@ static void check(const wire_message *m) {
         FUZZ_REQUIRE(m->navigate.mode <= WIRE_WALK && m->navigate.speed >= 0 && m->navigate.speed <= 1000);
         break;
     case WIRE_CAMERA: check_camera(&m->camera.to); break;
-    case WIRE_JUMP: FUZZ_REQUIRE(m->jump.pane < WIRE_PANES && m->jump.x >= 0 && m->jump.x <= 1); break;
+    case WIRE_JUMP:
+        FUZZ_REQUIRE(m->jump.pane < WIRE_PANES && m->jump.x >= 0 && m->jump.x <= 1);
+        FUZZ_REQUIRE(all_within(m->jump.place, 3, 1e7) && m->jump.distance >= 1 && m->jump.distance <= 10000);
+        break;
     case WIRE_SET:
     case WIRE_WORLD:
         FUZZ_REQUIRE(m->set.pane >= -1 && m->set.pane < WIRE_PANES && m->set.name && m->set.value);

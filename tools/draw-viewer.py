@@ -100,6 +100,9 @@ def for_docs(machine, link, folder):
 
 
 def main():
+    if '-h' in sys.argv or '--help' in sys.argv:
+        print(__doc__)
+        return
     docs = '--docs' in sys.argv
     rest = [one for one in sys.argv[1:] if one != '--docs']
     folder = os.path.join(SOURCE, 'docs', 'viewer') if docs else rest[0] if rest else 'viewer-pictures'

@@ -327,6 +327,8 @@ NOC_API const noc_report_rule *noc_report_get_rule(const noc_report *report, siz
 /* Lights of lamps, as noc_import_params.each_lamp asks for, by their index in the scene; NULL beyond the last. A built
  * city keeps none. */
 NOC_API const noc_report_lamp *noc_report_get_lamp(const noc_report *report, size_t index);
+/* That of a light of the scene; NULL: it tells nothing of it. */
+NOC_API const noc_report_lamp *noc_report_find_lamp(const noc_report *report, size_t light);
 /* Counts lit windows and groups of lights anew, as the scene that was loaded has them since edits were committed.
  * NOC_ERR_ARGUMENT: one of them is NULL; NOC_ERR_MEMORY. */
 NOC_API noc_status noc_report_follow(noc_report *report, const noc_scene *scene);

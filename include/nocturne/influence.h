@@ -8,6 +8,7 @@
 #ifndef NOCTURNE_INFLUENCE_H
 #define NOCTURNE_INFLUENCE_H
 
+#include <nocturne/import.h>
 #include <nocturne/render.h>
 
 #ifdef __cplusplus
@@ -231,6 +232,12 @@ NOC_API noc_status noc_ranking_refine(noc_ranking *ranking, const noc_ranking_ta
  * NOC_ERR_ARGUMENT: nothing was estimated yet; NOC_ERR_MEMORY. */
 NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows, size_t count, size_t *found,
                                    noc_influence_sum *sum);
+
+/* These rows, then the sky and the sum, as CSV with a head of names: what nocturne influence --csv writes. Places are
+ * in the scene's CRS, local metres where it has none; the report, which may be NULL, tells of lamps. free() it. NULL:
+ * no memory, or a pointer that should not be NULL, which is reported. */
+NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
+                                size_t count, const noc_influence_sum *sum);
 
 #ifdef __cplusplus
 }

@@ -85,6 +85,10 @@ NOC_API noc_status noc_navigator_go(noc_navigator *navigator, const noc_camera *
 /* Goes to what is seen at `at` (as in noc_navigate_input): orbit turns about it and comes nearer; fly comes near; walk
  * stands on it, or before it where it is a wall. false: nothing is there, or there is no place to stand. */
 NOC_API bool noc_navigator_jump(noc_navigator *navigator, const double at[2], double aspect);
+/* Goes to where a place of the scene (local metres) is seen from about so many metres, with nothing in between: nearer
+ * where there is no room. It keeps its direction as far as it can. It does not walk then. false: no place, or walls are
+ * all around it. */
+NOC_API bool noc_navigator_look(noc_navigator *navigator, const double place[3], double distance);
 
 #ifdef __cplusplus
 }

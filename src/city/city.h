@@ -8,6 +8,8 @@
 /* A street of the built-in city, whose params are within their rows: number i from 0 on, local metres. Its texts and
  * points are the arena's. false: there is none of that number, or (arena->refused) memory was refused. */
 bool city_builtin_street(const noc_city_params *params, size_t i, noc_arena *arena, geo_road *street);
+/* The same of the road around it: west, south, east, north, 0 to 3. Cars have none of it. */
+bool city_builtin_ring(const noc_city_params *params, int side, noc_arena *arena, geo_road *street);
 
 /* noc_scene_add_builtin. windows: those that the scene has are switched; false: they are dark glass. */
 noc_status city_add_builtin(noc_scene *scene, const char *name, const noc_builtin_params *params, bool windows);

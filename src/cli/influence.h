@@ -35,8 +35,6 @@ typedef struct influence_job {
 noc_status influence_tell_lamp(influence_job *job);
 
 /* influence_out.c */
-/* What the report tells of a lamp's light; NULL: nothing. */
-const noc_report_lamp *influence_find_lamp(const noc_report *report, size_t light);
 void influence_json_tags(const char *tags);
 noc_status influence_print(influence_job *job); /* the table, or JSON */
 noc_status influence_write_csv(influence_job *job);

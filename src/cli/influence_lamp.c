@@ -166,7 +166,7 @@ noc_status influence_tell_lamp(influence_job *job) {
     status = status ? status : noc_view_reach(job->view, light, NULL, &reach, objects, top, &found);
     status = status ? status : noc_scene_get_light(job->scene, light, &info);
     if (!status) {
-        const noc_report_lamp *lamp = influence_find_lamp(job->report, reach.emitter.light);
+        const noc_report_lamp *lamp = noc_report_find_lamp(job->report, reach.emitter.light);
         double kelvin = noc_rgb_kelvin(info.light.emission);
         if (job->args->json) {
             print_json(job, &reach, lamp, kelvin, objects, found);

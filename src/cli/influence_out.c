@@ -12,25 +12,8 @@ typedef struct told {
     double at[3];                /* in the scene's CRS, or local metres */
 } told;
 
-/* Lamps lie in the report in the order of their lights. */
-const noc_report_lamp *influence_find_lamp(const noc_report *report, size_t light) {
-    size_t lo = 0, hi = 1;
-    while (noc_report_get_lamp(report, hi))
-        hi *= 2;
-    while (lo < hi) {
-        size_t middle = (lo + hi) / 2;
-        const noc_report_lamp *l = noc_report_get_lamp(report, middle);
-        if (l && l->light < light)
-            lo = middle + 1;
-        else
-            hi = middle;
-    }
-    const noc_report_lamp *l = noc_report_get_lamp(report, lo);
-    return l && l->light == light ? l : NULL;
-}
-
 static told tell(const influence_job *job, const noc_influence_row *row) {
-    told t = { influence_find_lamp(job->report, row->emitter.light), NAN, { 0 } };
+    told t = { noc_report_find_lamp(job->report, row->emitter.light), NAN, { 0 } };
     noc_light_info light;
     memcpy(t.at, row->emitter.centre, sizeof(t.at));
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, t.at))
@@ -215,68 +198,17 @@ static noc_status print_json(influence_job *job) {
 
 noc_status influence_print(influence_job *job) { return job->args->json ? print_json(job) : print_table(job); }
 
-/* Names are strangers' words: spreadsheets run what begins like a formula, and an apostrophe makes it text to them. */
-static void csv_text(FILE *out, const char *text) {
-    fputs(",\"", out);
-    if (*text && strchr("=+-@", *text))
-        putc('\'', out);
-    for (const char *p = text; *p; p++) {
-        if (*p == '"')
-            putc('"', out);
-        putc((unsigned char)*p < ' ' ? ' ' : *p, out);
-    }
-    putc('"', out);
-}
-
-static void csv_number(FILE *out, double v, int decimals) {
-    if (!isfinite(v))
-        putc(',', out);
-    else if (decimals < 0)
-        fprintf(out, ",%.6g", v);
-    else
-        fprintf(out, ",%.*f", decimals, v);
-}
-
-static void csv_row(FILE *out, const influence_job *job, const noc_influence_row *row, size_t rank) {
-    told t = tell(job, row);
-    const noc_emitter *e = &row->emitter;
-    const double numbers[] = { row->lux.value, row->lux.error, row->share.value, row->share.error };
-    fprintf(out, "%zu", rank);
-    csv_text(out, e->name);
-    csv_text(out, noc_emitter_kind_name(e->kind));
-    csv_text(out, e->of);
-    for (int k = 0; k < 4; k++)
-        csv_number(out, numbers[k], -1);
-    for (int k = 0; k < 3; k++)
-        csv_number(out, t.at[k], 3);
-    csv_number(out, row->distance, 2);
-    csv_number(out, e->lumens, -1);
-    csv_number(out, t.kelvin, 0);
-    csv_text(out, e->inferred ? "inferred" : t.lamp ? "mapped" : "");
-    csv_text(out, t.lamp ? t.lamp->street : "");
-    csv_text(out, t.lamp ? t.lamp->file : "");
-    csv_text(out, t.lamp ? t.lamp->profile : "");
-    putc('\n', out);
-}
-
-static void csv_rest(FILE *out, const char *kind, noc_estimate lux, noc_estimate share) {
-    fprintf(out, ",\"\",\"%s\",\"\",%.6g,%.6g,%.6g,%.6g,,,,,,,\"\",\"\",\"\",\"\"\n", kind, lux.value, lux.error,
-            share.value, share.error);
-}
-
 noc_status influence_write_csv(influence_job *job) {
     FILE *out = fopen(job->args->csv, "w");
     if (!out) {
         cli_error("%s: cannot be written", job->args->csv);
         return NOC_ERR_IO;
     }
-    fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile\n",
-          out);
-    for (size_t i = 0; i < job->count; i++)
-        csv_row(out, job, &job->rows[i], i + 1);
-    csv_rest(out, "sky", job->sum.sky, job->sum.sky_share);
-    csv_rest(out, "all", job->sum.lux, (noc_estimate){ 1, 0 });
-    bool bad = ferror(out);
+    char *text = noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum);
+    if (text)
+        fputs(text, out);
+    bool bad = !text || ferror(out);
+    free(text);
     if (fclose(out) || bad) {
         cli_error("%s: not all of it could be written", job->args->csv);
         return NOC_ERR_IO;

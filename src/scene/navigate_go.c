@@ -235,6 +235,55 @@ static void place_orbiter(noc_navigator *n, const noc_hit *hit, nav_pose *p) {
     look(p, hit->place);
 }
 
+enum { ABOUT = 24, STEEP = 4, WAYS = ABOUT * STEEP };
+static const double steep[STEEP] = { .35, .6, .95, 1.35 };  /* radians over the level */
+static const double pleasant[STEEP] = { 1, .95, .75, .45 }; /* what each is worth */
+#define BODY .8                                             /* m about a place that its own lamp fills */
+
+/* Ways from a place to eyes that see it: first level ones, each ABOUT of them. */
+static void ways_of(const noc_navigator *n, const double place[3], double distance, noc_ray *rays) {
+    for (int i = 0; i < WAYS; i++) {
+        double a = n->now.yaw + M_PI + 2 * M_PI * (i % ABOUT) / ABOUT, up = steep[i / ABOUT];
+        noc_ray *r = &rays[i];
+        *r = (noc_ray){ .direction = { cos(up) * cos(a), cos(up) * sin(a), sin(up) }, .far = 1.25 * distance };
+        for (int k = 0; k < 3; k++)
+            r->origin[k] = place[k] + NOC_MIN(BODY, .3 * distance) * r->direction[k];
+    }
+}
+
+bool noc_navigator_look(noc_navigator *n, const double place[3], double distance) {
+    noc_ray rays[WAYS];
+    noc_hit hits[WAYS];
+    double best = 0, away = 0;
+    int way = -1;
+    if (!n || !place || !(distance > 0 && distance < 1e6))
+        return false;
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(place[k]) < 1e7))
+            return false;
+    ways_of(n, place, distance, rays);
+    nav_cast(n, rays, WAYS, hits);
+    for (int i = 0; i < WAYS; i++) {
+        double room = hits[i].hit ? NOC_MIN(distance, .8 * hits[i].distance) : distance;
+        double turn = fabs(remainder(2 * M_PI * (i % ABOUT) / ABOUT, 2 * M_PI)) / M_PI;
+        double score = room / distance * pleasant[i / ABOUT] * (1 - .25 * turn);
+        if (score > best * 1.0001) {
+            best = score;
+            away = room;
+            way = i;
+        }
+    }
+    if (way < 0 || away < NOC_MIN(2, .5 * distance))
+        return false;
+    nav_pose there = n->now;
+    for (int k = 0; k < 3; k++)
+        there.eye[k] = rays[way].origin[k] + away * rays[way].direction[k];
+    look(&there, place);
+    if (n->mode == NOC_NAVIGATE_WALK)
+        n->mode = NOC_NAVIGATE_FLY;
+    return nav_go_to(n, &there) == NOC_OK;
+}
+
 static bool place_walker(noc_navigator *n, const noc_hit *hit, nav_pose *p) {
     double from[3], foot[3], level = hypot(hit->normal[0], hit->normal[1]);
     bool wall = nav_is_wall(hit);

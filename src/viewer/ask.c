@@ -85,6 +85,8 @@ static void answer(asker *a, const question *q) {
     case WIRE_LAMP: ask_lamp(a, q); break;
     case WIRE_LIGHTS: ask_lights(a, q); break;
     case WIRE_ALIGN: ask_align(a, q); break;
+    case WIRE_FIND: ask_find(a, q); break;
+    case WIRE_NAME: ask_name(a, q); break;
     }
 }
 
@@ -158,8 +160,11 @@ void asker_ask(asker *a, const wire_ask *ask, const ask_view *view) {
     q->id = ask->id;
     q->ask = *ask;
     q->view = *view;
-    snprintf(q->object, sizeof(q->object), "%s", ask->object ? ask->object : "");
-    q->ask.object = ask->object ? q->object : NULL;
+    const char *text = ask->object ? ask->object : ask->street ? ask->street : ask->text;
+    snprintf(q->text, sizeof(q->text), "%s", text ? text : "");
+    q->ask.object = ask->object ? q->text : NULL;
+    q->ask.street = ask->street ? q->text : NULL;
+    q->ask.text = ask->text ? q->text : NULL;
     pthread_mutex_lock(&a->mutex);
     if (a->count == ASK_WAITING) {
         gone = a->waiting[0];

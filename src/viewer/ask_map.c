@@ -1,5 +1,6 @@
-/* Lamps by themselves, and all lights for the map. */
+/* All lights, streets and buildings for the map; the camera of a photograph. */
 #include "viewer/ask_parts.h"
+#include "viewer/option.h"
 
 #include <math.h>
 #include <nocturne/map.h>
@@ -8,7 +9,7 @@
 #include <string.h>
 
 enum { MOST_LIGHTS = 100000, MOST_CARS = 20000, MOST_STOPS = 200000 };
-enum { SECTION_LIGHTS = 1, SECTION_CARS, SECTION_TRACKS, SECTION_BUILDINGS = 5 };
+enum { SECTION_LIGHTS = 1, SECTION_CARS, SECTION_TRACKS, SECTION_BUILDINGS = 5, SECTION_STREETS, SECTION_NAMES };
 enum { LIGHT_BYTES = 24, CAR_BYTES = 16, STOP_BYTES = 12, MOST_CELLS = 512 /* along a side of the buildings */ };
 enum { KIND_OTHER, KIND_MAPPED, KIND_INFERRED, KIND_WINDOW, KIND_CAR };
 
@@ -22,23 +23,17 @@ static int kind_of(const noc_light_info *l) {
     return flat ? KIND_WINDOW : KIND_OTHER;
 }
 
-static unsigned char srgb8(double v) {
-    double s = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
-    return (unsigned char)lrint(255 * fmin(1, fmax(0, s)));
-}
-
-static void colour_of(const noc_light_info *l, unsigned char rgb[3]) {
-    const float *e = l->light.emission;
-    double most = fmax((double)e[0], fmax((double)e[1], (double)e[2]));
-    for (int k = 0; k < 3; k++)
-        rgb[k] = most > 0 ? srgb8((double)e[k] / most) : 0;
+const char *ask_light_kind(const noc_light_info *light) {
+    static const char *const names[] = { "other", "lamp", "inferred", "window", "car" };
+    return names[kind_of(light)];
 }
 
 static void put_light(unsigned char *out, const noc_light_info *l, size_t index) {
     for (int k = 0; k < 3; k++)
         wire_put_f32(out + 4 * k, (float)l->centre[k]);
     wire_put_f32(out + 12, (float)l->lumens);
-    colour_of(l, out + 16);
+    const float *e = l->light.emission;
+    viewer_colour((double[3]){ e[0], e[1], e[2] }, out + 16);
     out[19] = (unsigned char)kind_of(l);
     wire_put_u32(out + 20, (uint32_t)index);
 }
@@ -126,6 +121,30 @@ static void add_tracks(const asker *a, map *m) {
     end_section(m, from, STOP_BYTES);
 }
 
+/* Middles of streets, each a line; then a name of each, ended by a 0. */
+static void add_streets(const asker *a, map *m) {
+    const noc_scene *scene = world_scene(a->world);
+    size_t from = begin_section(m, SECTION_STREETS), total = 0, count = 0;
+    noc_street s;
+    for (; noc_scene_get_street(scene, count, &s) && total < MOST_STOPS && !ask_stopped(a); count++)
+        for (size_t k = 0; k < s.point_count; k++, total++) {
+            unsigned char *at = more(m, STOP_BYTES);
+            if (!at)
+                return;
+            wire_put_f32(at, s.points[2 * k]);
+            wire_put_f32(at + 4, s.points[2 * k + 1]);
+            wire_put_u32(at + 8, (uint32_t)count);
+        }
+    end_section(m, from, STOP_BYTES);
+    from = begin_section(m, SECTION_NAMES);
+    for (size_t i = 0; i < count && noc_scene_get_street(scene, i, &s); i++) {
+        unsigned char *at = more(m, strlen(s.name) + 1);
+        if (at)
+            memcpy(at, s.name, strlen(s.name) + 1);
+    }
+    end_section(m, from, 1);
+}
+
 static noc_status cast_down(void *user, const noc_ray *rays, size_t count, noc_hit *hits) {
     return noc_view_cast(user, rays, count, hits);
 }
@@ -135,7 +154,7 @@ static bool goes_on(void *user, const char *what, double done) {
     return !ask_stopped(user);
 }
 
-static bool of_building(uint8_t cls) {
+bool ask_of_building(uint8_t cls) {
     return cls == NOC_CLASS_WALL || cls == NOC_CLASS_ROOF || cls == NOC_CLASS_WINDOW || cls == NOC_CLASS_DOOR ||
            cls == NOC_CLASS_INSTALLATION;
 }
@@ -163,7 +182,7 @@ static void add_buildings(asker *a, map *m, const noc_scene_info *info) {
             wire_put_u32(at + 16 + 4 * k, (uint32_t)(k ? p.height : p.width));
         }
         for (size_t i = 0; at && i < cells; i++)
-            at[24 + i] = of_building(cls[i]);
+            at[24 + i] = ask_of_building(cls[i]);
         end_section(m, from, 1);
     }
     free(cls);
@@ -176,6 +195,7 @@ void ask_lights(asker *a, const question *q) {
     if (!q->ask.moving) {
         add_lights(a, &m, info.light_slots);
         add_tracks(a, &m);
+        add_streets(a, &m);
         add_buildings(a, &m, &info);
     }
     add_cars(a, &m, info.cars);
@@ -188,40 +208,6 @@ void ask_lights(asker *a, const question *q) {
         free(m.data);
     else
         outbox_binary(a->box, q->id, m.data, m.size - OUTBOX_ROOM);
-}
-
-/* What the file of a lamp says of it. */
-static json_t *tags_of(const char *tags) {
-    json_t *list = json_object();
-    while (*tags) {
-        size_t n = strcspn(tags, "\n"), key = strcspn(tags, "=");
-        char name[256], value[1024];
-        if (key < n) {
-            snprintf(name, sizeof(name), "%.*s", (int)key, tags);
-            snprintf(value, sizeof(value), "%.*s", (int)(n - key - 1), tags + key + 1);
-            json_t *known = json_string(name); /* a key must be UTF-8, too */
-            if (known)
-                json_object_set_new(list, name, wire_text(value));
-            json_decref(known);
-        }
-        tags += n + (tags[n] == '\n');
-    }
-    return list;
-}
-
-static void add_report(const asker *a, const question *q, json_t *m) {
-    const noc_report *report = world_report(a->world);
-    const noc_report_lamp *lamp;
-    for (size_t i = 0; report && (lamp = noc_report_get_lamp(report, i)); i++) {
-        if (lamp->light != q->ask.light)
-            continue;
-        json_object_set_new(m, "file", wire_text(lamp->file));
-        json_object_set_new(m, "street", wire_text(lamp->street));
-        json_object_set_new(m, "profile", wire_text(lamp->profile));
-        json_object_set_new(m, "watts", ask_number(lamp->watts));
-        json_object_set_new(m, "tags", tags_of(lamp->tags));
-        return;
-    }
 }
 
 void ask_align(asker *a, const question *q) {
@@ -252,27 +238,4 @@ void ask_align(asker *a, const question *q) {
     memcpy(go.camera.to.target, camera.target, sizeof(camera.target));
     go.camera.to.fov = camera.fov_deg;
     inbox_put(a->in, &go);
-}
-
-void ask_lamp(asker *a, const question *q) {
-    static const char *const kinds[] = { "other", "lamp", "inferred", "window", "car" };
-    noc_scene_info info;
-    noc_light_info l;
-    noc_scene_get_info(world_scene(a->world), &info);
-    if (q->ask.light >= info.light_slots || noc_scene_get_light(world_scene(a->world), q->ask.light, &l) || l.removed) {
-        ask_refuse(a, q, "there is no such light");
-        return;
-    }
-    json_t *m = ask_begin(q, 1), *crs = ask_crs(a, l.centre);
-    json_object_set_new(m, "light", json_integer((json_int_t)q->ask.light));
-    json_object_set_new(m, "name", wire_text(l.light.name ? l.light.name : ""));
-    json_object_set_new(m, "kind", json_string(kinds[kind_of(&l)]));
-    json_object_set_new(m, "place", ask_place(l.centre));
-    if (crs)
-        json_object_set_new(m, "crs", crs);
-    json_object_set_new(m, "lumens", ask_number(l.lumens));
-    json_object_set_new(m, "kelvin", ask_number(noc_rgb_kelvin(l.light.emission)));
-    json_object_set_new(m, "group", wire_text(world_group_name(a->world, l.light.group)));
-    add_report(a, q, m);
-    ask_send(a, q, m);
 }

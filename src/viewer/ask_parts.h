@@ -12,7 +12,7 @@ enum { ASK_WAITING = 8, ASK_KEPT = 8, ASK_ROWS = 40 };
 typedef struct question {
     uint32_t id;
     wire_ask ask;
-    char object[512]; /* what ask.object points at */
+    char text[512]; /* what ask.object, street or text points at */
     ask_view view;
 } question;
 
@@ -54,9 +54,19 @@ json_t *ask_number(double value); /* null where it is not finite */
 /* ask_rank.c: pixel and region */
 void ask_pixel(asker *a, const question *q);
 void ask_region(asker *a, const question *q);
-/* ask_map.c: lamp, lights and a photograph */
+/* ask_map.c: lights and a photograph */
 void ask_align(asker *a, const question *q);
-void ask_lamp(asker *a, const question *q);
 void ask_lights(asker *a, const question *q);
+const char *ask_light_kind(const noc_light_info *light); /* as the map calls it */
+bool ask_of_building(uint8_t cls);
+/* ask_lamp.c */
+void ask_lamp(asker *a, const question *q);
+/* ask_find.c: search by name, and names of what a pointer is over */
+void ask_find(asker *a, const question *q);
+void ask_name(asker *a, const question *q);
+/* The highest surface there; false: none. */
+bool ask_top(asker *a, const double at[2], noc_hit *hit);
+/* Name of the street that the surface is of; NULL: of none. */
+const char *ask_street_of(const asker *a, const noc_hit *hit);
 
 #endif

@@ -51,55 +51,18 @@ static json_t *rows_of(const noc_influence_row *rows, size_t count, const noc_in
     return list;
 }
 
-/* As noc_influence tells it: ids are strangers' words, so quotes are doubled, and a sign that begins a formula in
- * programs that show tables is put behind an apostrophe. */
-static void write_text(FILE *out, const char *text) {
-    fputc('"', out);
-    if (*text == '=' || *text == '+' || *text == '-' || *text == '@')
-        fputc('\'', out);
-    for (; *text; text++) {
-        if (*text == '"')
-            fputc('"', out);
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, out);
-    }
-    fputc('"', out);
-}
-
-static void write_row(FILE *out, size_t rank, const char *kind, const char *name, long light, const double *place,
-                      const noc_estimate *share, const noc_estimate *lux) {
-    fprintf(out, "%zu,%s,", rank, kind);
-    write_text(out, name);
-    fprintf(out, ",%ld,", light);
-    if (place)
-        fprintf(out, "%.3f,%.3f,%.3f", place[0], place[1], place[2]);
-    else
-        fputs(",,", out);
-    fprintf(out, ",%.6g,%.3g,%.6g,%.3g\n", share->value, share->error, lux->value, lux->error);
-}
-
-/* Places are in the city's coordinate system, where it has one, as those of `nocturne influence --csv`. */
-static char *csv_of(const asker *a, const noc_influence_row *rows, size_t count, const noc_influence_sum *sum) {
+/* All rows that were found. */
+static char *csv_of(const asker *a, noc_ranking *ranking) {
+    noc_influence_sum sum;
+    size_t found = 0;
     char *text = NULL;
-    size_t size;
-    noc_scene_info info;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
+    if (noc_ranking_get(ranking, NULL, 0, &found, &sum))
         return NULL;
-    noc_scene_get_info(world_scene(a->world), &info);
-    fputs("rank,kind,name,light,x,y,z,share,share_error,lux,lux_error\n", out);
-    for (size_t i = 0; i < count; i++) {
-        const noc_emitter *e = &rows[i].emitter;
-        double place[3] = { e->centre[0], e->centre[1], e->centre[2] };
-        if (*info.given_crs && noc_scene_from_local(world_scene(a->world), NULL, place))
-            memcpy(place, e->centre, sizeof(place));
-        write_row(out, i + 1, kind_of(e), *e->name ? e->name : e->of, (long)e->light, place, &rows[i].share,
-                  &rows[i].lux);
-    }
-    if (sum->sky.value > 0)
-        write_row(out, count + 1, "sky", "sky", -1, NULL, &sum->sky_share, &sum->sky);
-    if (sum->rest.value > 0)
-        write_row(out, count + 2, "other", "all others", -1, NULL, &sum->rest_share, &sum->rest);
-    return fclose(out) ? (free(text), NULL) : text;
+    noc_influence_row *rows = calloc(sum.emitters + 1, sizeof(*rows));
+    if (rows && !noc_ranking_get(ranking, rows, sum.emitters, &found, &sum))
+        text = noc_influence_csv(world_scene(a->world), world_report(a->world), rows, found, &sum);
+    free(rows);
+    return text;
 }
 
 /* ---- refining ---- */
@@ -124,9 +87,9 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_set_new(m, "luminance_error", ask_number(sum.luminance.error));
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
-    ask_send(a, q, m);
     if (done >= 1)
-        ask_keep(a, q->id, csv_of(a, rows, found, &sum));
+        ask_keep(a, q->id, csv_of(a, ranking));
+    ask_send(a, q, m);
 }
 
 /* Is the greatest share known well enough? */
@@ -153,7 +116,9 @@ static void rank(asker *a, const question *q, const noc_region *region, json_t *
         if (last)
             break;
     }
-    if (status && status != NOC_ERR_CANCELLED)
+    if (status == NOC_ERR_CANCELLED) /* who has enough may save what there is */
+        ask_keep(a, q->id, csv_of(a, ranking));
+    else if (status)
         ask_refuse(a, q, *a->wrong ? a->wrong : noc_status_text(status));
     noc_ranking_destroy(ranking);
 }
@@ -170,6 +135,9 @@ static json_t *about_hit(const asker *a, const noc_hit *hit) {
     json_object_set_new(about, "class", json_string(noc_class_name(hit->cls)));
     if (object)
         json_object_set_new(about, "object", wire_text(object));
+    const char *street = ask_street_of(a, hit);
+    if (street)
+        json_object_set_new(about, "street", wire_text(street));
     if (hit->light >= 0)
         json_object_set_new(about, "light", json_integer(hit->light));
     return about;
@@ -238,7 +206,7 @@ static char *words_of(const asker *a, const wire_ask *ask, int w, int h) {
     } else if (ask->points) {
         write_polygon(out, a, ask);
     } else {
-        fprintf(out, "object:%s", ask->object);
+        fprintf(out, ask->street ? "street:%s" : "object:%s", ask->street ? ask->street : ask->object);
     }
     return fclose(out) ? (free(text), NULL) : text;
 }
@@ -255,6 +223,47 @@ static noc_region *find(asker *a, const question *q) {
     return region;
 }
 
+/* ---- outlines ---- */
+
+enum { OUTLINE = 96 }; /* rays, about */
+
+/* Ray number i of count along the outline of what was asked. */
+static bool outline_ray(const question *q, double top, int i, int count, noc_ray *ray) {
+    const wire_ask *ask = &q->ask;
+    double way = (double)i / count * (ask->has_rect ? 4 : ask->points), along = way - floor(way);
+    int side = (int)way;
+    if (ask->has_rect) {
+        const double *r = ask->rect, x[] = { r[0], r[2], r[2], r[0], r[0] }, y[] = { r[1], r[1], r[3], r[3], r[1] };
+        double at[2] = { (x[side] + along * (x[side + 1] - x[side])) * q->view.width,
+                         (y[side] + along * (y[side + 1] - y[side])) * q->view.height };
+        return !noc_camera_ray(&q->view.camera, q->view.width, q->view.height, at, ray);
+    }
+    const double *from = ask->point[side], *to = ask->point[(side + 1) % ask->points];
+    *ray = (noc_ray){ { from[0] + along * (to[0] - from[0]), from[1] + along * (to[1] - from[1]), top },
+                      { 0, 0, -1 },
+                      INFINITY };
+    return true;
+}
+
+/* Where the outline of a rectangle or a polygon lies in the scene; NULL: that of an object or street is not told. */
+static json_t *outline_of(asker *a, const question *q) {
+    int sides = q->ask.has_rect ? 4 : q->ask.points, count = sides ? sides * (1 + OUTLINE / sides) : 0;
+    noc_ray *rays = calloc((size_t)count + 1, sizeof(*rays));
+    noc_hit *hits = calloc((size_t)count + 1, sizeof(*hits));
+    noc_scene_info info;
+    noc_scene_get_info(world_scene(a->world), &info);
+    bool there = count && rays && hits;
+    for (int i = 0; there && i < count; i++)
+        there = outline_ray(q, info.bounds_max[2] + 100, i, count, &rays[i]);
+    json_t *list = there && !noc_view_cast(a->ask_view, rays, (size_t)count, hits) ? json_array() : NULL;
+    for (int i = 0; list && i < count; i++)
+        if (hits[i].hit) /* the sky has no place */
+            json_array_append_new(list, ask_place(hits[i].place));
+    free(rays);
+    free(hits);
+    return list;
+}
+
 void ask_region(asker *a, const question *q) {
     noc_region *region = find(a, q);
     if (!region) {
@@ -264,7 +273,10 @@ void ask_region(asker *a, const question *q) {
     noc_region_info info;
     noc_region_get_info(region, &info);
     json_t *about = json_object();
+    json_t *outline = outline_of(a, q);
     json_object_set_new(about, "place", ask_place(info.centre));
+    if (outline)
+        json_object_set_new(about, "outline", outline);
     if (!q->ask.has_rect)
         json_object_set_new(about, "area", ask_number(info.weight));
     rank(a, q, region, about);

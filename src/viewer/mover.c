@@ -75,6 +75,14 @@ bool mover_advance(mover *m, double aspect, double now) {
     return true;
 }
 
+void mover_arrive(mover *m, double aspect, double now) {
+    char name[sizeof(m->name)];
+    memcpy(name, m->name, sizeof(name));
+    for (int i = 0; i < 10 && mover_moves(m); i++)
+        step(m, &(noc_navigate_input){ .seconds = 1, .at = { 0.5, 0.5 }, .aspect = aspect }, now);
+    memcpy(m->name, name, sizeof(name));
+}
+
 /* The camera of that name, of the recipe or found in the scene. It stays the same until the aspect is another one,
  * whatever is set of the lights. */
 static bool find(mover *m, const char *name, double aspect, noc_camera *camera) {
@@ -137,6 +145,13 @@ bool mover_jump(mover *m, const double at[2], double aspect, double now, char *w
     *m->name = 0;
     snprintf(why, size, "nothing is there to go to");
     return noc_navigator_jump(m->navigator, at, aspect);
+}
+
+bool mover_look(mover *m, const double place[3], double distance, double now, char *why, size_t size) {
+    m->stepped = now;
+    *m->name = 0;
+    snprintf(why, size, "that place is seen from nowhere near");
+    return noc_navigator_look(m->navigator, place, distance);
 }
 
 bool mover_navigate(mover *m, wire_mode mode, double speed, double now, char *why, size_t size) {

@@ -34,6 +34,9 @@ bool mover_moves(const mover *m);
 /* These are false, with why, where it cannot be. */
 bool mover_go(mover *m, const wire_camera *to, double aspect, double now, char *why, size_t size);
 bool mover_jump(mover *m, const double at[2], double aspect, double now, char *why, size_t size);
+/* Who is on the way is there. */
+void mover_arrive(mover *m, double aspect, double now);
+bool mover_look(mover *m, const double place[3], double distance, double now, char *why, size_t size);
 bool mover_navigate(mover *m, wire_mode mode, double speed, double now, char *why, size_t size);
 json_t *mover_camera(const mover *m);     /* state.camera */
 json_t *mover_navigation(const mover *m); /* state.navigate */

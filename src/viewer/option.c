@@ -1,6 +1,7 @@
 /* Rows of the option tables as JSON, and errors as words. */
 #include "viewer/option.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,6 +22,17 @@ bool viewer_wrong(char *why, size_t size, const char *fmt, ...) {
     vsnprintf(why, size, fmt, ap);
     va_end(ap);
     return false;
+}
+
+static unsigned char srgb8(double v) {
+    double s = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
+    return (unsigned char)lrint(255 * fmin(1, fmax(0, s)));
+}
+
+void viewer_colour(const double rgb[3], unsigned char out[3]) {
+    double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+    for (int k = 0; k < 3; k++)
+        out[k] = most > 0 ? srgb8(rgb[k] / most) : 0;
 }
 
 bool viewer_among(const char *name, const char *const *names, size_t count) {

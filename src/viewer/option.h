@@ -21,6 +21,9 @@ bool viewer_option_set(const noc_option *o, void *params, const char *value, cha
 /* As docs/viewer-protocol.md has an option; params hold its default. */
 json_t *viewer_option_json(const noc_option *o, const void *params);
 
+/* A linear colour, its greatest part full, as sRGB. */
+void viewer_colour(const double rgb[3], unsigned char out[3]);
+
 /* Latin-1 as UTF-8. */
 const char *viewer_utf8(char *text, size_t size, const char *latin1);
 

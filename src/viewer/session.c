@@ -59,6 +59,7 @@ static void serve(session *s) {
         wakes = wait > 0 ? inbox_wait(&s->in, wakes, wait) : wakes;
     }
     asker_destroy(s->asker);
+    asker_destroy(s->namer);
     mover_finish(&s->mover);
     panes_finish(&s->panes);
 }

@@ -95,6 +95,22 @@ static void told(session *s, bool done, const char *why) {
     s->told_less = true;
 }
 
+/* The same of a way that it goes. */
+static void went(session *s, bool goes, bool still, const char *why) {
+    if (goes && still)
+        mover_arrive(&s->mover, session_aspect(s), session_now());
+    told(s, goes, why);
+}
+
+static void do_jump(session *s, const wire_message *m) {
+    const double at[2] = { m->jump.x, m->jump.y }, now = session_now();
+    char why[256] = "";
+    s->input = m->jump.n;
+    bool goes = m->jump.has_place ? mover_look(&s->mover, m->jump.place, m->jump.distance, now, why, sizeof(why))
+                                  : mover_jump(&s->mover, at, session_aspect(s), now, why, sizeof(why));
+    went(s, goes, m->jump.still, why);
+}
+
 /* What only shows otherwise is shown so at once, and its mean goes on. */
 static void do_set(session *s, const wire_message *m) {
     char why[256] = "";
@@ -111,10 +127,11 @@ static void do_set(session *s, const wire_message *m) {
 static void do_ask(session *s, const wire_ask *ask) {
     const pane *of = &s->panes.pane[ask->pane < s->panes.count ? ask->pane : 0];
     ask_view view = { s->mover.camera, s->width ? s->width : 1280, s->height ? s->height : 720, of->look.render };
-    if (!s->asker)
-        s->asker = asker_create(s->setup->world, s->box, &s->in);
-    if (s->asker)
-        asker_ask(s->asker, ask, &view);
+    asker **one = ask->what == WIRE_FIND || ask->what == WIRE_NAME ? &s->namer : &s->asker;
+    if (!*one)
+        *one = asker_create(s->setup->world, s->box, &s->in);
+    if (*one)
+        asker_ask(*one, ask, &view);
     else
         session_note(s, "error", "there is no memory for questions");
 }
@@ -135,13 +152,9 @@ void session_do(session *s, const wire_message *m) {
         break;
     case WIRE_CAMERA:
         s->input = m->camera.n ? m->camera.n : s->input;
-        told(s, mover_go(&s->mover, &m->camera.to, session_aspect(s), now, why, sizeof(why)), why);
+        went(s, mover_go(&s->mover, &m->camera.to, session_aspect(s), now, why, sizeof(why)), m->camera.still, why);
         break;
-    case WIRE_JUMP:
-        s->input = m->jump.n;
-        told(s, mover_jump(&s->mover, (double[2]){ m->jump.x, m->jump.y }, session_aspect(s), now, why, sizeof(why)),
-             why);
-        break;
+    case WIRE_JUMP: do_jump(s, m); break;
     case WIRE_SET: do_set(s, m); break;
     case WIRE_WORLD: told(s, world_set(s->setup->world, m->set.name, m->set.value, why, sizeof(why)), why); break;
     case WIRE_LAYOUT: told(s, !panes_set_layout(&s->panes, m->layout), "there is no memory for these panes"); break;
@@ -149,6 +162,8 @@ void session_do(session *s, const wire_message *m) {
     case WIRE_CANCEL:
         if (s->asker)
             asker_cancel(s->asker, m->cancel);
+        if (s->namer)
+            asker_cancel(s->namer, m->cancel);
         break;
     case WIRE_SAVE:
         if (!session_save(s, m, why, sizeof(why)))

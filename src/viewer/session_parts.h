@@ -38,6 +38,7 @@ struct session {
     bool behind;    /* messages took so long that a picture comes first, whatever else waits */
     bool told_less; /* something was set that the client has not been told */
     asker *asker;   /* NULL until it is asked */
+    asker *namer;   /* of names, which wait for no ranking; NULL until it is asked */
 };
 
 double session_now(void);

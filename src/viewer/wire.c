@@ -8,7 +8,7 @@
 
 const char *const wire_modes[] = { "orbit", "fly", "walk", NULL };
 const char *const wire_layouts[] = { "single", "divider", "methods", "difference", NULL };
-static const char *const questions[] = { "pixel", "region", "lamp", "lights", "align", NULL };
+static const char *const questions[] = { "pixel", "region", "lamp", "lights", "align", "find", "name", NULL };
 static const char *const saves[] = { "png", "exr", "recipe", "csv", NULL };
 static const char *const keys[] = { "forward", "back", "left", "right", "up", "down", "fast", "slow", NULL };
 
@@ -56,6 +56,8 @@ static void take_number(reading *r, const char *key, double low, double high, do
     if (!is_number(json_object_get(r->root, key), low, high, out))
         refuse(r, "%s is no number of %g to %g", key, low, high);
 }
+
+static bool take_flag(const reading *r, const char *key) { return json_is_true(json_object_get(r->root, key)); }
 
 static bool has(const reading *r, const char *key) { return json_object_get(r->root, key) != NULL; }
 
@@ -170,6 +172,7 @@ static bool camera_of(const json_t *value, bool by_name, wire_camera *out) {
 
 static void read_camera(reading *r, wire_message *m) {
     m->camera.n = has(r, "n") ? take_count(r, "n") : 0;
+    m->camera.still = take_flag(r, "still");
     if (!camera_of(r->root, true, &m->camera.to))
         refuse(r, "it has neither a name, nor eye, target and fov");
     if (has(r, "eye"))
@@ -178,7 +181,16 @@ static void read_camera(reading *r, wire_message *m) {
 
 static void read_jump(reading *r, wire_message *m) {
     m->jump.n = has(r, "n") ? take_count(r, "n") : 0;
+    m->jump.still = take_flag(r, "still");
     m->jump.pane = take_pane(r, 0);
+    m->jump.has_place = has(r, "place");
+    m->jump.distance = 25;
+    if (has(r, "distance"))
+        take_number(r, "distance", 1, 10000, &m->jump.distance);
+    if (m->jump.has_place) {
+        take_numbers(r, "place", -FAR, FAR, 3, m->jump.place);
+        return;
+    }
     take_number(r, "x", 0, 1, &m->jump.x);
     take_number(r, "y", 0, 1, &m->jump.y);
 }
@@ -216,9 +228,24 @@ static void read_region(reading *r, wire_ask *ask) {
             if (!numbers(json_array_get(polygon, i), -FAR, FAR, 2, ask->point[i]))
                 refuse(r, "polygon has a point that is none");
         ask->points = (int)count;
+    } else if (has(r, "street")) {
+        ask->street = take_text(r, "street");
     } else {
         ask->object = take_text(r, "object");
     }
+}
+
+static void read_name(reading *r, wire_ask *ask) {
+    ask->has_light = has(r, "light");
+    ask->has_at = !ask->has_light && has(r, "at");
+    if (ask->has_light)
+        ask->light = take_count(r, "light");
+    else if (ask->has_at)
+        take_numbers(r, "at", -FAR, FAR, 2, ask->at);
+    else if (has(r, "street"))
+        ask->street = take_text(r, "street");
+    else
+        ask->object = take_text(r, "object");
 }
 
 static void read_pairs(reading *r, wire_ask *ask) {
@@ -249,9 +276,13 @@ static void read_ask(reading *r, wire_message *m) {
     } else if (ask->what == WIRE_LAMP) {
         ask->light = take_count(r, "light");
     } else if (ask->what == WIRE_LIGHTS) {
-        ask->moving = json_is_true(json_object_get(r->root, "moving"));
+        ask->moving = take_flag(r, "moving");
     } else if (ask->what == WIRE_ALIGN) {
         read_pairs(r, ask);
+    } else if (ask->what == WIRE_FIND) {
+        ask->text = take_text(r, "text");
+    } else if (ask->what == WIRE_NAME) {
+        read_name(r, ask);
     }
 }
 

@@ -49,7 +49,15 @@ typedef enum wire_key {
 
 typedef enum wire_mode { WIRE_ORBIT, WIRE_FLY, WIRE_WALK } wire_mode;
 typedef enum wire_layout { WIRE_SINGLE, WIRE_DIVIDER, WIRE_METHODS, WIRE_DIFFERENCE } wire_layout;
-typedef enum wire_question { WIRE_PIXEL, WIRE_REGION, WIRE_LAMP, WIRE_LIGHTS, WIRE_ALIGN } wire_question;
+typedef enum wire_question {
+    WIRE_PIXEL,
+    WIRE_REGION,
+    WIRE_LAMP,
+    WIRE_LIGHTS,
+    WIRE_ALIGN,
+    WIRE_FIND,
+    WIRE_NAME
+} wire_question;
 typedef enum wire_save { WIRE_PNG, WIRE_EXR, WIRE_RECIPE, WIRE_CSV } wire_save;
 extern const char *const wire_modes[], *const wire_layouts[]; /* their names, NULL-ended */
 
@@ -72,12 +80,15 @@ typedef struct wire_ask {
     uint32_t id;
     int pane;
     double x, y;   /* pixel */
-    bool has_rect; /* region: the rectangle, else the polygon where there are points, else the object */
+    bool has_rect; /* region: the rectangle, else the polygon where there are points, else the object or the street */
     double rect[4];
     int points, pairs;
     double point[WIRE_POINTS][2];
-    const char *object;
-    uint32_t light;                                            /* lamp */
+    const char *object, *street; /* region and name; NULL: another one is said */
+    const char *text;            /* find */
+    bool has_light, has_at;      /* name: of the light, of what is seen there from above, else of object or street */
+    double at[2];
+    uint32_t light;                                            /* lamp, name */
     bool moving;                                               /* lights: cars alone */
     double photo[WIRE_PAIRS][2], place[WIRE_PAIRS][3], aspect; /* align */
 } wire_ask;
@@ -97,12 +108,16 @@ typedef struct wire_message {
         } navigate;
         struct {
             uint32_t n;
+            bool still; /* at once, without a flight */
             wire_camera to;
         } camera;
         struct {
             uint32_t n;
+            bool still;
             int pane;
             double x, y;
+            bool has_place; /* there, in place of what is seen at x, y; to be looked at from so far */
+            double place[3], distance;
         } jump;
         struct {
             int pane; /* -1: all */

@@ -15,6 +15,7 @@ typedef struct group {
     bool said;       /* by words of the command line */
     bool dirty;      /* the scene has it otherwise */
     bool recoloured; /* of that: its colour */
+    char own[8];     /* mean of its lights' own colours, "#rrggbb" */
 } group;
 
 /* What surfaces of a class are made of. */

@@ -99,6 +99,28 @@ static void begin_group(const viewer_world *w, group *g, const noc_group_info *i
     }
 }
 
+/* The mean colour of each group's lights, as inputs have them. */
+static void find_colours(viewer_world *w, size_t groups) {
+    double(*sum)[3] = calloc(groups, sizeof(*sum));
+    noc_scene_info info;
+    noc_scene_get_info(w->scene, &info);
+    for (size_t i = 0; sum && i < info.light_slots; i++) {
+        noc_light_info l;
+        bool there = !noc_scene_get_light(w->scene, i, &l) && !l.removed && l.light.group >= 0;
+        const float *e = l.light.emission;
+        double most = there ? fmax((double)e[0], fmax((double)e[1], (double)e[2])) : 0;
+        for (int k = 0; k < 3 && most > 0 && (size_t)l.light.group < groups; k++)
+            sum[l.light.group][k] += e[k] / most;
+    }
+    for (size_t i = 0; sum && i < w->group_count; i++) {
+        unsigned char c[3];
+        viewer_colour(sum[w->groups[i].index], c);
+        if (c[0] + c[1] + c[2])
+            snprintf(w->groups[i].own, sizeof(w->groups[i].own), "#%02x%02x%02x", c[0], c[1], c[2]);
+    }
+    free(sum);
+}
+
 static noc_status begin_groups(viewer_world *w) {
     enum { MOST = 200 };
     size_t count = noc_scene_groups(w->scene, NULL, 0);
@@ -118,6 +140,7 @@ static noc_status begin_groups(viewer_world *w) {
         json_decref(name);
     }
     free(all);
+    find_colours(w, count);
     return NOC_OK;
 }
 
@@ -345,9 +368,10 @@ static json_t *schema_of(viewer_world *w) {
     for (size_t i = 0; i < w->group_count; i++) {
         snprintf(name, sizeof(name), "group.%s", w->groups[i].is.name);
         world_group_text(&w->groups[i].was, text, sizeof(text));
-        json_array_append_new(list, json_pack("{ss ss ss ss ss ss}", "name", name, "group", "Lights", "kind", "group",
-                                              "unit", "", "help", "lights of this group: on or off, a factor, a colour",
-                                              "value", text));
+        json_array_append_new(list,
+                              json_pack("{ss ss ss ss ss ss ss}", "name", name, "group", "Lights", "kind", "group",
+                                        "unit", "", "help", "lights of this group: on or off, a factor, a colour",
+                                        "value", text, "colour", w->groups[i].own));
     }
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         for (int f = 0; f < FIELD_COUNT && w->classes[c].there; f++) {

@@ -451,6 +451,44 @@ static void goes_to_cameras_and_clicked_places(void **state) {
     leave(&p);
 }
 
+/* A place between two high walls is looked at from along them, one in a box from nowhere. */
+static void looks_at_places_past_walls(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    int ground = of_class(s, NOC_CLASS_TERRAIN), wall = of_class(s, NOC_CLASS_WALL);
+    QUAD(s, ground, -100, -100, 0, 200, 0, 0, 0, 200, 0);
+    block(s, wall, -80, 3, 0, 160, 5, 40);
+    block(s, wall, -80, -8, 0, 160, 5, 40);
+    block(s, wall, 60, -90, 0, 3, 3, 3);
+    place p = enter(s);
+    noc_camera from = look(0, -60, 5, 0, 0, 0, 50);
+    for (noc_navigate_mode mode = 0; mode < NOC_NAVIGATE_COUNT; mode++) {
+        const double at[3] = { 5, 0, .1 };
+        assert_int_equal(noc_navigator_set_mode(p.nav, NOC_NAVIGATE_FLY), NOC_OK);
+        assert_int_equal(noc_navigator_set_camera(p.nav, &from), NOC_OK);
+        assert_int_equal(noc_navigator_set_mode(p.nav, mode), NOC_OK);
+        rest(&p);
+        assert_true(noc_navigator_look(p.nav, at, 30));
+        rest(&p);
+        noc_camera c = camera_of(&p);
+        double way[3], length = 0;
+        for (int k = 0; k < 3; k++) {
+            way[k] = at[k] - c.eye[k];
+            length += way[k] * way[k];
+        }
+        length = sqrt(length);
+        noc_hit hit;
+        noc_ray ray = { { c.eye[0], c.eye[1], c.eye[2] }, { way[0], way[1], way[2] }, INFINITY };
+        assert_int_equal(noc_view_cast(p.view, &ray, 1, &hit), NOC_OK);
+        assert_true(length > 15 && length < 31.5 && hit.distance > length - .01);
+        assert_true(fabs(c.eye[1]) < 3 || c.eye[2] > 20);
+    }
+    assert_false(noc_navigator_look(p.nav, (double[3]){ 61.5, -88.5, 1.5 }, 30));
+    assert_false(noc_navigator_look(p.nav, (double[3]){ NAN, 0, 0 }, 30));
+    assert_false(noc_navigator_look(p.nav, (double[3]){ 0, 0, 0 }, 0));
+    leave(&p);
+}
+
 static void numbers_of_any_kind_harm_nobody(void **state) {
     (void)state;
     place p = city();
@@ -511,6 +549,7 @@ int main(void) {
         cmocka_unit_test(orbits_about_the_middle_and_stays_over_the_ground),
         cmocka_unit_test(flies_over_the_ground_and_not_out_of_the_world),
         cmocka_unit_test(goes_to_cameras_and_clicked_places),
+        cmocka_unit_test(looks_at_places_past_walls),
         cmocka_unit_test(numbers_of_any_kind_harm_nobody),
         cmocka_unit_test(rays_that_are_refused_are_told),
     };

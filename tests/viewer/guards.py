@@ -174,6 +174,10 @@ def test_broken_messages_close_that_client(p):
                        (b'{"t":"nothing"}', policy), (b'{"t":"hello"}', policy), (deep.encode(), policy),
                        (b'{"t":"hello","width":1e99,"height":1}', policy),
                        (b'{"t":"ask","id":0,"what":"files"}', policy),
+                       (b'{"t":"ask","id":0,"what":"find","text":7}', policy),
+                       (b'{"t":"ask","id":0,"what":"find","text":"' + b"a" * 5000 + b'"}', policy),
+                       (b'{"t":"ask","id":0,"what":"name","at":[1e99,0]}', policy),
+                       (b'{"t":"jump","n":1,"place":[0,0,1e99]}', policy),
                        (b'{"t":"set","name":"' + b"a" * 5000 + b'","value":""}', policy),
                        (b'{"t":"watch","on":true,"x":"' + b"a" * 40000 + b'"}', 1009),
                        (b'{"t":"watch","on":true,"x":"\xff"}', 1007), (b"\xed\xa0\x80", 1007), (b"\xc0\x80", 1007)):

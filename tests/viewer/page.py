@@ -182,6 +182,93 @@ class Tests:
         blur(page)
         page.key('t')
 
+    def test_outlines_stay(self):
+        """A rectangle that was asked about is seen in the picture and on the map until it is cleared."""
+        page = self.page
+        painted = """(() => {
+            const canvas = document.querySelector('.overlay');
+            const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            let count = 0;
+            for (let i = 0; i < data.length; i += 4)
+                count += data[i + 3] > 100 && data[i] > 100 && data[i] < 150 && data[i + 2] > 230;
+            return count;
+        })()"""
+        on_map = painted.replace('.overlay', '.map')
+        on_map = on_map.replace('data[i + 2] > 230', 'data[i + 2] > 230 && data[i + 1] > 160')
+        page.key('m')
+        page.wait("document.querySelector('.map').width > 200")
+        before = page.evaluate(on_map)
+        page.key('t')
+        press_text(page, 'Rectangle')
+        page.drag(60, 250, 200, 370)
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        assert page.evaluate(painted) > 100
+        assert 'this rectangle of the picture' in page.evaluate("document.querySelector('.answer h3').textContent")
+        page.key('m')
+        page.wait(f'{on_map} > {before} + 20')
+        page.key('t')
+        press_text(page, 'Clear')
+        page.wait(f'{painted} === 0')
+        page.key('m')
+        page.wait(f'{on_map} <= {before} + 5')
+        page.key('m')
+
+    def test_finds_by_name(self):
+        page = self.page
+        page.key('/')
+        page.type('ring e')
+        page.wait("document.querySelector('.found li')?.dataset.kind === 'street'")
+        page.key('Enter')
+        page.wait("document.querySelector('.answer h3')?.textContent === 'Who lights Ring East?'")
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.key('b')
+        press_text(page, 'Go there')
+        page.wait('viewer.state.camera.eye[2] > 2')
+        rests(page)
+        page.evaluate("(document.querySelector('.finder input').value = '', 0)")
+        page.key('b')
+        page.evaluate("viewer.goTo('street')")
+        page.wait("viewer.state.camera.name === 'street'")
+        rests(page)
+
+    def test_map_tells_names_and_scale(self):
+        page = self.page
+        page.key('m')
+        page.wait("/^\\d+ k?m$/.test(document.querySelector('.map-scale').textContent)")
+        bar = page.evaluate("(({ textContent, offsetWidth }) => [textContent, offsetWidth])"
+                            "(document.querySelector('.map-scale'))")
+        assert bar[0].split()[0].strip('0') in ('1', '2', '5') and 24 < bar[1] <= 121, bar
+        light = page.evaluate("document.querySelector('.map').getBoundingClientRect().toJSON()")
+        found = False
+        for y in range(10, int(light['height']) - 10, 9):  # until the pointer comes over something
+            page.mouse('mouseMoved', light['x'] + light['width'] / 2, light['y'] + y)
+            self.machine.listen(0.4)
+            found = found or page.evaluate("!document.querySelector('.map-tip').hidden")
+            if found:
+                break
+        assert found, 'nothing has a name'
+        assert page.evaluate("document.querySelector('.map-tip').textContent.length") > 3
+        page.key('m')
+
+    def test_settings_are_found_by_what_they_do(self):
+        page = self.page
+        page.key('p')
+        for word in ('dim', 'LED', 'sodium', 'off'):
+            page.evaluate("(document.querySelector('input[type=search]').value = '', 0)")
+            page.press('input[type=search]')
+            page.type(word)
+            page.wait("document.querySelector('.control[data-name=\"group.lamps\"]').offsetParent !== null")
+        lamps = """document.querySelector('.control[data-name="group.lamps"] input[type=color]')"""
+        swatch = page.evaluate(f'{lamps}.value')
+        assert swatch not in ('#000000', '#ffffff') and swatch[1:3] > swatch[5:7], swatch
+        label = page.evaluate("document.querySelector('label[for=\"option-window-lit\"]').textContent")
+        assert label == 'share of windows lit at 21 h', label
+        titles = page.evaluate("[...document.querySelectorAll('.presets button')].map((one) => one.title)")
+        assert 'sets hour 3, lamps 0.5,own' in titles, titles
+        page.evaluate("(document.querySelector('input[type=search]').value = '', 0)")
+        page.key('Escape')
+        page.wait("document.getElementById('left').hidden")
+
     def test_shows_modes(self):
         page = self.page
         before = look(page)

@@ -76,3 +76,21 @@ bool city_builtin_street(const noc_city_params *params, size_t number, noc_arena
     free(t);
     return found;
 }
+
+bool city_builtin_ring(const noc_city_params *params, int side, noc_arena *arena, geo_road *street) {
+    town *t = noc_calloc(1, sizeof(*t));
+    arena->refused = arena->refused || !t;
+    if (!t || side < 0 || side > 3) {
+        free(t);
+        return false;
+    }
+    town_plan(t, params);
+    int axis = side % 2; /* west and east, south and north */
+    const town_gap *g = &t->axis[axis].gaps.data[side < 2 ? 0 : t->axis[axis].gaps.len - 1];
+    double middle = (g->lo + g->hi) / 2;
+    vec2 a = axis == 0 ? (vec2){ middle, -t->half } : (vec2){ -t->half, middle };
+    vec2 b = axis == 0 ? (vec2){ middle, t->half } : (vec2){ t->half, middle };
+    bool found = line(t, a, b, g->hi - g->lo + PARKED, false, arena_format(arena, "ring %d", side + 1), arena, street);
+    free(t);
+    return found;
+}

@@ -127,14 +127,25 @@ static noc_status keep_streets(importer *im, const input *in) {
     return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
 }
 
-/* They can be asked for by their ids, too. */
+/* Of names such as "Street 1", whose id is "street 1". */
+static bool add_street(importer *im, const geo_road *street, const char *word, const char *of) {
+    char name[32];
+    noc_snprintf(name, sizeof(name), "%s %s", word, of);
+    return noc_scene_add_street(im->scene, &(noc_scene_street){ name, street->id, (float)street->width, 0, 0 },
+                                street->xyz, street->point_count);
+}
+
+/* They can be asked for by their names, too, and so can the road around the city. */
 static noc_status name_streets(importer *im, const input *in) {
+    static const char *const sides[] = { "West", "South", "East", "North" };
     const noc_city_params defaults = noc_city_default_params();
     const noc_city_params *params = im->params->builtin ? &im->params->builtin->city : &defaults;
     geo_road street;
     for (size_t i = 0; city_builtin_street(params, i, &im->names, &street); i++)
-        if (!noc_scene_add_street(im->scene, &(noc_scene_street){ street.id, street.id, (float)street.width, 0, 0 },
-                                  street.xyz, street.point_count))
+        if (!add_street(im, &street, "Street", strchr(street.id, ' ') + 1))
+            return NOC_ERR_MEMORY;
+    for (int i = 0; i < 4 && city_builtin_ring(params, i, &im->names, &street); i++)
+        if (!add_street(im, &street, "Ring", sides[i]))
             return NOC_ERR_MEMORY;
     return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
 }

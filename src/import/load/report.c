@@ -36,6 +36,20 @@ const noc_report_lamp *noc_report_get_lamp(const noc_report *report, size_t inde
     return report && index < report->lamps.len ? &report->lamps.data[index] : NULL;
 }
 
+/* Lamps lie in the order of their lights. */
+const noc_report_lamp *noc_report_find_lamp(const noc_report *report, size_t light) {
+    size_t lo = 0, hi = report ? report->lamps.len : 0;
+    while (lo < hi) {
+        size_t middle = (lo + hi) / 2;
+        if (report->lamps.data[middle].light < light)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    const noc_report_lamp *l = noc_report_get_lamp(report, lo);
+    return l && l->light == light ? l : NULL;
+}
+
 void noc_report_destroy(noc_report *report) {
     if (!report)
         return;

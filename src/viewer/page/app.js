@@ -85,8 +85,24 @@ export class App extends Emitter {
     goTo(camera) {
         this.move(
             'camera',
-            typeof camera === 'string' ? { name: camera } : { eye: camera.eye, target: camera.target, fov: camera.fov },
+            typeof camera === 'string'
+                ? { name: camera, ...this.#still() }
+                : { eye: camera.eye, target: camera.target, fov: camera.fov },
         );
+    }
+
+    // To where a place is seen from about so many metres.
+    look(place, distance = 25) {
+        this.move('jump', { place, distance, ...this.#still() });
+    }
+
+    jump(hit) {
+        this.move('jump', { ...hit, ...this.#still() });
+    }
+
+    // Who wants less motion is there at once.
+    #still() {
+        return window.matchMedia('(prefers-reduced-motion: reduce)').matches ? { still: true } : {};
     }
 
     shown(input) {

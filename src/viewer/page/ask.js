@@ -9,6 +9,7 @@ export class Ask {
     #what = '';
     #lit = new Set(); // lights whose rows are held
     #tool = null; // corners of the rectangle that is drawn in the picture
+    #region = null; // that was asked: { values, camera, outline }
 
     constructor(app, drawers, map, panes, input) {
         this.app = app;
@@ -18,7 +19,11 @@ export class Ask {
         this.input = input;
         this.building = button(
             'Whole object',
-            () => this.#region({ object: this.#answer?.object }, `${this.#kind(this.#answer)} ${this.#answer?.object}`),
+            () => {
+                const { street, object } = this.#answer ?? {};
+                if (street) this.street(street);
+                else this.object(object, this.#answer);
+            },
             { title: 'the building or street of the place that was asked about', disabled: true },
         );
         const tools = el(
@@ -34,6 +39,10 @@ export class Ask {
             button('Rectangle on map', () => this.#onMap('rect')),
             button('Polygon on map', () => this.#onMap('polygon')),
             this.building,
+            (this.clear = button('Clear', () => this.#clear(), {
+                title: 'no region, no answer',
+                disabled: true,
+            })),
         );
         this.out = el(
             'div',
@@ -46,8 +55,16 @@ export class Ask {
     }
 
     pick(hit) {
-        this.map.region = null;
-        this.#ask('pixel', hit, 'place');
+        this.#outline(null);
+        this.#ask('pixel', hit, 'this place');
+    }
+
+    street(street) {
+        this.#about({ street }, street);
+    }
+
+    object(object, answer) {
+        this.#about({ object }, `${answer ? this.#kind(answer) : 'object'} ${object}`);
     }
 
     lamp(light) {
@@ -80,7 +97,7 @@ export class Ask {
                 const drawn = this.#tool;
                 this.#untool();
                 if (drawn && drawn.rect[2] - drawn.rect[0] > 0.002 && drawn.rect[3] - drawn.rect[1] > 0.002)
-                    this.#region({ ...drawn, pane: drawn.pane }, 'rectangle of the picture');
+                    this.#about(drawn, 'this rectangle of the picture');
             },
         };
     }
@@ -102,18 +119,39 @@ export class Ask {
     #onMap(kind) {
         this.drawers.show('Map');
         this.map.draw(kind, (polygon) =>
-            this.#region({ polygon }, kind === 'rect' ? 'rectangle of the map' : 'polygon of the map'),
+            this.#about({ polygon }, kind === 'rect' ? 'this rectangle of the map' : 'this polygon of the map'),
         );
     }
 
-    #region(values, what) {
+    #about(values, what) {
+        this.#outline({ values, camera: this.panes.camera(values.pane ?? 0), outline: null });
         this.#ask('region', values, what);
+    }
+
+    // What is shown of a region until another one is asked about.
+    #outline(region) {
+        this.#region = region;
+        this.map.region = region?.values.polygon ?? null;
+        this.map.redraw();
+        this.panes.draw();
+    }
+
+    #clear() {
+        if (this.#running) this.app.cancel(this.#asked);
+        this.#running = false;
+        this.#outline(null);
+        this.#forget();
+        this.out.replaceChildren(
+            el('p', { class: 'quiet', text: 'Click a place in the picture, or choose a region.' }),
+        );
+        this.map.redraw();
+        this.panes.draw();
     }
 
     #forget() {
         this.#answer = null;
         this.map.place = null;
-        this.building.disabled = true;
+        this.building.disabled = this.clear.disabled = true;
         this.app.highlight([]);
     }
 
@@ -123,6 +161,7 @@ export class Ask {
         this.#lit.clear();
         this.app.highlight([]);
         this.drawers.show('Lights', false);
+        this.clear.disabled = false;
         this.out.replaceChildren(el('p', { class: 'quiet', role: 'status', text: 'Asking …' }));
         this.#running = true;
         this.#asked = this.app.ask(what, values, (answer) => this.#take(what, answer));
@@ -136,8 +175,16 @@ export class Ask {
         }
         this.#answer = answer;
         if (what === 'pixel') {
-            this.building.disabled = !answer.object;
-            this.building.textContent = answer.object ? `Whole ${this.#kind(answer)}` : 'Whole object';
+            this.building.disabled = !answer.object && !answer.street;
+            this.building.textContent = answer.street
+                ? `Whole ${answer.street}`
+                : answer.object
+                  ? `Whole ${this.#kind(answer)}`
+                  : 'Whole object';
+        }
+        if (answer.outline && this.#region && !this.#region.outline) {
+            this.#region.outline = answer.outline;
+            this.map.region ??= answer.outline.map((place) => place.slice(0, 2));
         }
         if (answer.place) this.map.place = answer.place;
         if (what === 'lamp' && answer.place) this.app.highlight([{ light: answer.light, place: answer.place }]);
@@ -172,16 +219,17 @@ export class Ask {
     }
 
     #place(answer) {
-        if (this.#what === 'place' && !answer.place) return [el('p', { text: 'Nothing is there: the sky.' })];
+        if (this.#what === 'this place' && !answer.place) return [el('p', { text: 'Nothing is there: the sky.' })];
         const lamp =
             answer.light !== undefined && answer.light !== null && answer.light >= 0
                 ? button('This is a lamp: its card', () => this.lamp({ light: answer.light, place: answer.place }))
                 : null;
         return [
-            el('h3', { text: `Who lights this ${this.#what}?` }),
+            el('h3', { text: `Who lights ${this.#what}?` }),
             this.#facts([
                 ...this.#where(answer),
                 ['class', answer.class],
+                ['street', answer.street],
                 ['object', answer.object],
                 ['area', answer.area && `${number(answer.area)} m²`],
                 ['illuminance', this.#estimate(answer.lux, answer.lux_error, 'lx')],
@@ -198,12 +246,13 @@ export class Ask {
 
     #lamp(answer) {
         const kelvin = answer.kelvin ? `${number(answer.kelvin, 4)} K` : null;
-        const go = answer.place ? button('Go there', () => this.map.goTo(answer.place)) : null;
+        const go = answer.place ? button('Go there', () => this.app.look(answer.place)) : null;
         return [
             el('h3', { text: answer.name || `light ${answer.light ?? ''}` }),
             this.#facts([
                 ['kind', answer.kind],
                 ...this.#where(answer),
+                ['height', Number.isFinite(answer.height) && `${number(answer.height)} m above ground`],
                 ['flux', answer.lumens !== undefined && `${number(answer.lumens)} lm`],
                 ['colour', kelvin],
                 ['group', answer.group],
@@ -214,7 +263,39 @@ export class Ask {
                 ...Object.entries(answer.tags ?? {}),
             ]),
             go,
+            ...this.#reach(answer),
         ].filter((one) => one);
+    }
+
+    // What a lamp lights, as nocturne influence --lamp tells it.
+    #reach({ reach, done, lumens }) {
+        if (!reach) return done < 1 ? [el('p', { class: 'quiet', text: 'What it lights …' })] : [];
+        const row = ({ name, class: kind, lumens: own }) =>
+            el(
+                'tr',
+                {},
+                el('td', {}, name || 'unnamed', ' ', el('span', { class: 'quiet', text: kind })),
+                el('td', { class: 'figure', text: number(own) }),
+                el('td', { class: 'figure', text: `${number((100 * own) / lumens)} %` }),
+            );
+        const heads = ['object', 'lm', 'of its flux'].map((text) => el('th', { scope: 'col', text }));
+        return [
+            el('h3', { text: 'What it lights' }),
+            this.#facts([
+                ['1 lx or more', `${number(reach.area)} m²`],
+                ['brightest', `${number(reach.most)} lx`],
+                ['0.1 lx as far as', reach.far > 0 && `${number(reach.far)} m`],
+                ['meets surfaces', `${number(reach.met)} of ${number(lumens)} lm`],
+                ['objects', reach.objects],
+            ]),
+            el(
+                'table',
+                { class: 'rows reach' },
+                el('caption', { class: 'hidden', text: 'Objects by the light that they get of it' }),
+                el('thead', {}, el('tr', {}, ...heads)),
+                el('tbody', {}, ...reach.most_lit.map(row)),
+            ),
+        ];
     }
 
     #table(answer) {
@@ -299,6 +380,34 @@ export class Ask {
         return line;
     }
 
+    // The rectangle that was asked about, as long as its camera is there; else its outline in the scene, dashed.
+    #markRegion(context, pane) {
+        if (!this.#region || this.#tool) return;
+        const { values, camera, outline } = this.#region;
+        const now = this.panes.camera(pane);
+        const same = (a, b) => a.every((x, i) => Math.abs(x - b[i]) < 1e-6 * (1 + Math.abs(x)));
+        const here = camera && now && same(camera.eye, now.eye) && same(camera.target, now.target);
+        context.strokeStyle = '#7db4ff';
+        context.lineWidth = 1.5;
+        context.beginPath();
+        if (values.rect && here && pane === values.pane) {
+            const rect = this.panes.rect(pane);
+            const [x0, y0, x1, y1] = values.rect;
+            context.rect(
+                rect.x + x0 * rect.width,
+                rect.y + y0 * rect.height,
+                (x1 - x0) * rect.width,
+                (y1 - y0) * rect.height,
+            );
+        } else if (outline?.length) {
+            context.setLineDash([6, 4]);
+            const points = [...outline, outline[0]].map((point) => this.panes.where(pane, point));
+            points.forEach((at, i) => at && context[points[i - 1] ? 'lineTo' : 'moveTo'](...at));
+        }
+        context.stroke();
+        context.setLineDash([]);
+    }
+
     #show(row) {
         const held = (this.#answer?.rows ?? []).filter((one) => this.#lit.has(one.light));
         this.app.highlight(row ? [row, ...held] : held);
@@ -324,8 +433,9 @@ export class Ask {
                 (y1 - y0) * rect.height,
             );
         }
+        this.#markRegion(context, pane);
         const place =
-            this.drawers.isOpen('Lights') && this.#what === 'place'
+            this.drawers.isOpen('Lights') && this.#what === 'this place'
                 ? this.panes.where(pane, this.#answer?.place)
                 : null;
         context.lineWidth = 2;

@@ -115,6 +115,17 @@ const LAMPS = [
     ['4000K', 'LED', '4000 K'],
 ];
 
+// A colour of a group's words as the swatch has it: a black body's by a fit, `own` the mean of its lights.
+function shownAs(colour, own) {
+    const kelvin = parseFloat(colour);
+    if (!/k$/i.test(colour) || !(kelvin > 0)) return own || '#ffffff';
+    const t = clamp(kelvin, 1000, 40000) / 100;
+    const green = t <= 66 ? 99.47 * Math.log(t) - 161.12 : 288.12 * (t - 60) ** -0.0755;
+    const red = t <= 66 ? 255 : 329.7 * (t - 60) ** -0.1332;
+    const blue = t >= 66 ? 255 : t <= 19 ? 0 : 138.52 * Math.log(t - 10) - 305.04;
+    return `#${[red, green, blue].map((one) => Math.round(clamp(one, 0, 255)).toString(16).padStart(2, '0')).join('')}`;
+}
+
 export function groupWords(value) {
     const words = { on: true, scale: 1, colour: 'own' };
     for (const word of String(value)
@@ -151,12 +162,15 @@ function group(option, change, labels) {
         words = groupWords(value);
         on.show(words.on ? 'on' : 'off');
         dim.show(String(words.scale));
-        if (words.colour.startsWith('#')) free.value = words.colour;
+        free.value = words.colour.startsWith('#') ? words.colour : shownAs(words.colour, option.colour);
         mark();
     };
     const colours = el('span', { class: 'colours', role: 'group', 'aria-label': `${name}, colour` }, ...buttons, free);
     return { parts: [...on.parts], below: [...dim.parts, colours], show };
 }
+
+// What a name does not say by itself.
+const LABELS = { 'window-lit': 'share of windows lit at 21 h' };
 
 const KINDS = { bool, switch: choice, choice, int: numeric, real: numeric, text, colour, group };
 
@@ -169,7 +183,7 @@ export class Control {
     constructor(option, change) {
         this.option = option;
         this.change = change;
-        const name = option.label ?? option.name.replace(/^(group|material)\./, '').replaceAll(/[-.]/g, ' ');
+        const name = LABELS[option.name] ?? option.name.replace(/^(group|material)\./, '').replaceAll(/[-.]/g, ' ');
         const id = `option-${option.name}`;
         const labels = { id, 'aria-describedby': `${id}-why` };
         this.made = (option.name === 'exposure' ? automatic : (KINDS[option.kind] ?? text))(

@@ -11,6 +11,7 @@ import { Ask } from './ask.js';
 import { Layouts } from './compare.js';
 import { Photo } from './photo.js';
 import { Places } from './places.js';
+import { Find } from './find.js';
 import { Out } from './out.js';
 import { Status } from './status.js';
 import { Choice, typing, button } from './dom.js';
@@ -32,7 +33,7 @@ new Legend($('legend'), $('stage'), app);
 const map = new CityMap(app, drawers, (light) => ask.lamp(light));
 const ask = new Ask(app, drawers, map, panes, input);
 new Photo(app, drawers, panes, input);
-const places = new Places(app, drawers);
+const places = new Places(app, drawers, new Find(app, drawers, ask));
 const out = new Out(app, drawers, places, $('text'));
 const layouts = new Layouts($('layouts'), app, panes);
 
@@ -50,7 +51,7 @@ app.on('welcome', () => {
 });
 
 input.on('pick', (hit) => (input.picker ? input.picker(hit) : ask.pick(hit)));
-input.on('jump', (hit) => app.move('jump', hit));
+input.on('jump', (hit) => app.jump(hit));
 
 // ---- the connection ----
 
@@ -114,7 +115,7 @@ document.addEventListener('visibilitychange', () => connection.send('watch', { o
 const next = (choice) => choice.names[(choice.names.indexOf(choice.name) + 1) % choice.names.length];
 const ACTS = [
     ['Enter', 'Enter', 'who lights what is under the pointer?', () => ask.pick(input.target())],
-    ['g', 'G', 'go to what is under the pointer', () => app.move('jump', input.target())],
+    ['g', 'G', 'go to what is under the pointer', () => app.jump(input.target())],
     ['n', 'N', 'next way of moving', () => connection.send('navigate', { mode: next(moving) })],
     ['y', 'Y', 'next layout', () => layouts.set(next(layouts.choice))],
     ['z', 'Z', 'headlight: the city without its lights, and back', () => headlight()],
@@ -125,6 +126,7 @@ const ACTS = [
     ['p', 'P', 'settings', () => drawers.toggle('Settings')],
     ['m', 'M', 'map', () => drawers.toggle('Map')],
     ['t', 'T', 'table of lights', () => drawers.toggle('Lights')],
+    ['/', '/', 'find by name', () => places.find()],
     ['b', 'B', 'places and bookmarks', () => drawers.toggle('Places')],
     ['o', 'O', 'photograph', () => drawers.toggle('Photo')],
     ['u', 'U', 'out: save, link, command', () => drawers.toggle('Out')],

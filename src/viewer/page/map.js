@@ -1,16 +1,21 @@
 // map.js: the map beside the picture: lights, cars, tracks, the camera with what it sees; pan and zoom; a click goes
 // there; rectangles and polygons are drawn here. Metres of the scene, north (y) is up.
-import { el, button, clamp } from './dom.js';
-import { drawMap, readMap } from './map-draw.js';
+import { el, button, clamp, number } from './dom.js';
+import { drawMap, readMap, scaleOf } from './map-draw.js';
 
 const AGAIN = 1000; // ms between two looks at cars that move
+const HOVER = 200; // ms that the pointer rests before a name is asked for
+const LOW = 40; // m over the ground: who is lower lands where the place is seen
 
 export class CityMap {
-    data = { lights: [], cars: [], tracks: [], buildings: null };
+    data = { lights: [], cars: [], tracks: [], streets: [], buildings: null };
+    version = 0; // of the data
+    layer = null; // what was drawn of them
+    labels = []; // names of streets that are shown
     centre = [0, 0];
     scale = 1; // CSS pixels a metre
     drawing = null; // rectangle or polygon that is being drawn: { kind, points, done }
-    region = null; // the one that was drawn last: [[x, y], ...]
+    region = null; // that was asked about: [[x, y], ...]
     place = null; // that was asked about
     #frame = 0;
     #drag = null;
@@ -18,6 +23,8 @@ export class CityMap {
     #asked = false;
     #timer = 0;
     #fitted = false;
+    #hover = 0;
+    #naming = 0; // the question for a name
 
     // lamp(light): a click on a light.
     constructor(app, drawers, lamp) {
@@ -30,7 +37,16 @@ export class CityMap {
             role: 'application',
             'aria-label': 'Map. Arrow keys move it, plus and minus zoom, Enter goes to the middle.',
         });
-        this.scaleBar = el('span', { class: 'quiet' });
+        this.scaleBar = el('div', { class: 'map-scale', role: 'img' });
+        this.tip = el('div', { class: 'map-tip', role: 'status', hidden: true });
+        const box = el(
+            'div',
+            { class: 'map-box' },
+            this.canvas,
+            el('div', { class: 'map-north', role: 'img', 'aria-label': 'North is up', text: '↑ N' }),
+            this.scaleBar,
+            this.tip,
+        );
         this.hint = el('p', { class: 'quiet' });
         this.windows = el('input', { type: 'checkbox', checked: true, on: { change: () => this.redraw() } });
         this.follow = el('input', { type: 'checkbox', on: { change: () => this.#following() } });
@@ -41,7 +57,6 @@ export class CityMap {
             button('To the camera', () => this.#toCamera()),
             el('label', {}, this.follow, ' follow'),
             el('label', {}, this.windows, ' windows'),
-            this.scaleBar,
         );
         const marks = el(
             'ul',
@@ -54,7 +69,7 @@ export class CityMap {
                 ['camera', 'camera'],
             ].map(([kind, text]) => el('li', {}, el('span', { class: `swatch ${kind}` }), text)),
         );
-        this.root = el('div', { class: 'body map-body' }, tools, this.canvas, marks, this.hint);
+        this.root = el('div', { class: 'body map-body' }, tools, box, marks, this.hint);
         drawers.add('Map', 'right', this.root, 'M', () => this.#seen());
         this.#listen();
         app.on('welcome', () => ((this.#asked = false), (this.#fitted = false), this.#seen()));
@@ -113,6 +128,7 @@ export class CityMap {
         this.app.ask('lights', moving ? { moving } : {}, (answer) => {
             if (!answer.body) return;
             Object.assign(this.data, readMap(answer.body, moving));
+            if (!moving) this.version++;
             this.redraw();
             if (this.data.cars.length) this.#timer = setTimeout(() => this.#again(), AGAIN);
         });
@@ -176,13 +192,15 @@ export class CityMap {
         canvas.addEventListener('pointermove', (event) => this.#moved(event, point(event)));
         canvas.addEventListener('pointerup', (event) => this.#up(event, point(event)));
         canvas.addEventListener('pointercancel', (event) => this.#pointers.delete(event.pointerId));
+        canvas.addEventListener('pointerleave', () => this.#untip());
         canvas.addEventListener('dblclick', () => this.#close());
         canvas.addEventListener('keydown', (event) => this.#key(event));
     }
 
     #moved(event, now) {
         const before = this.#pointers.get(event.pointerId);
-        if (!before) return;
+        if (!before) return this.#over(now);
+        this.#untip();
         const others = [...this.#pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
         this.#pointers.set(event.pointerId, now);
         if (Math.hypot(now[0] - this.#drag.start[0], now[1] - this.#drag.start[1]) > 4) this.#drag.moved = true;
@@ -227,7 +245,6 @@ export class CityMap {
 
     #settle(points) {
         const { done } = this.drawing;
-        this.region = points;
         this.draw(null);
         done(points);
     }
@@ -251,8 +268,47 @@ export class CityMap {
         return best;
     }
 
-    // What the camera turns about comes there when it orbits, else the eye does.
+    // ---- names of what the pointer rests on ----
+
+    #untip() {
+        clearTimeout(this.#hover);
+        this.app.cancel(this.#naming);
+        this.tip.hidden = true;
+    }
+
+    #over(at) {
+        this.#untip();
+        this.#hover = setTimeout(() => this.#name(at, this.#nearest(at)), HOVER);
+    }
+
+    #name(at, light) {
+        const tell = (text) => {
+            this.tip.textContent = text;
+            this.tip.hidden = !text;
+            const right = at[0] > this.canvas.clientWidth / 2;
+            this.tip.style.left = right ? '' : `${at[0] + 12}px`;
+            this.tip.style.right = right ? `${this.canvas.clientWidth - at[0] + 12}px` : '';
+            this.tip.style.top = `${clamp(at[1] - 12, 0, this.canvas.clientHeight - 28)}px`;
+        };
+        const about = light ? { light: light.light } : { at: this.from(...at) };
+        this.#naming = this.app.ask('name', about, (answer) => {
+            if (answer.refused) return;
+            if (light) tell(`${answer.name || `${answer.kind} ${answer.light}`}, ${number(answer.lumens)} lm`);
+            else if (answer.street) tell(answer.street);
+            else tell(answer.building ? answer.object || 'building' : '');
+        });
+    }
+
+    // To where a place is seen; who flies high stays as high, with what it turns about, or its eye, over the place.
     goTo(place) {
+        this.app.ask('name', { at: place.slice(0, 2) }, (answer) => {
+            const camera = this.app.camera;
+            if (camera && answer.place && camera.eye[2] - answer.place[2] < LOW) this.app.look(answer.place);
+            else this.#shift(place);
+        });
+    }
+
+    #shift(place) {
         const camera = this.app.camera;
         if (!camera) return;
         const from = this.app.state?.navigate?.mode === 'orbit' ? camera.target : camera.eye;
@@ -290,6 +346,10 @@ export class CityMap {
         if (!width || !height) return;
         if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
         if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
+        const { metres, text } = scaleOf(this.scale, 120);
+        this.scaleBar.textContent = text;
+        this.scaleBar.style.width = `${metres * this.scale}px`;
+        this.scaleBar.setAttribute('aria-label', `Scale: this bar is ${text}`);
         const context = canvas.getContext('2d');
         context.setTransform(ratio, 0, 0, ratio, 0, 0);
         drawMap(this, context, width, height);

@@ -82,11 +82,12 @@ export class Drawers {
     }
 }
 
-// Sets of values at once; what the schema does not have is left out.
+// Sets of values at once, with what they are; what the schema does not have is left out.
 const PRESETS = [
-    ['Evening', { hour: 19 }],
+    ['Evening, 19 h', { hour: 19 }],
     ['21 h', { hour: 21 }],
-    ['Deep night', { hour: 3 }],
+    ['Deep night, 3 h', { hour: 3 }],
+    ['Deep night, 3 h, lamps at half', { hour: 3, 'group.lamps': '0.5,own' }],
     ['After rain', { wet: 'on' }],
     ['Dry', { wet: 'off' }],
     ['All sodium', { 'group.lamps': '1,2000K' }],
@@ -95,6 +96,9 @@ const PRESETS = [
     ['Still', { preset: 'still' }],
     ['Moving', { preset: 'interactive' }],
 ];
+
+// What one looks for where a kind of options is meant.
+const WORDS = { group: ['dim', 'dimming', 'off', 'on', 'brightness', 'colour', 'LED', 'sodium', 'kelvin'] };
 
 export class Settings {
     #controls = new Map();
@@ -138,6 +142,11 @@ export class Settings {
         );
         app.on('welcome', () => this.#make());
         app.on('state', () => this.#show());
+        app.on('setting', (words) => {
+            drawers.show('Settings');
+            this.search.value = words;
+            this.#filter();
+        });
     }
 
     // Of this window alone: fewer pixels come faster.
@@ -214,7 +223,14 @@ export class Settings {
 
     #offer() {
         const known = PRESETS.filter(([, values]) => Object.keys(values).some((name) => this.app.option(name)));
-        this.presets.replaceChildren(...known.map(([name, values]) => button(name, () => this.apply(values))));
+        const says = (values) =>
+            `sets ${Object.entries(values)
+                .filter(([name]) => this.app.option(name))
+                .map(([name, value]) => `${name.replace(/^group\./, '')} ${value}`)
+                .join(', ')}`;
+        this.presets.replaceChildren(
+            ...known.map(([name, values]) => button(name, () => this.apply(values), { title: says(values) })),
+        );
         this.presets.hidden = !known.length;
     }
 
@@ -263,7 +279,8 @@ export class Settings {
         for (const { name, root, controls } of this.#sections) {
             let found = 0;
             for (const { option, root: row } of controls) {
-                const text = `${name} ${option.name} ${option.help} ${(option.choices ?? []).join(' ')}`.toLowerCase();
+                const more = [...(option.choices ?? []), ...(WORDS[option.kind] ?? [])].join(' ');
+                const text = `${name} ${option.name} ${option.help} ${more}`.toLowerCase();
                 const hit = words.every((word) => text.includes(word));
                 row.hidden = !hit;
                 found += hit;

@@ -66,9 +66,14 @@ export class Panes {
         return { x: (width - size.width) / 2, y: (height - size.height) / 2, ...size };
     }
 
+    // That of the picture in a pane.
+    camera(pane) {
+        return this.app.stats[pane]?.camera ?? this.app.camera;
+    }
+
     // A place of the scene in a pane, CSS pixels; null where it is not seen.
     where(pane, place) {
-        const camera = this.app.stats[pane]?.camera ?? this.app.camera;
+        const camera = this.camera(pane);
         if (!camera || !place) return null;
         const rect = this.rect(pane);
         const at = project(camera, rect.width / rect.height, place);

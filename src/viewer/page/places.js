@@ -8,8 +8,10 @@ export class Places {
     bookmarks = []; // { name, eye, target, fov }
     #playing = 0;
 
-    constructor(app, drawers) {
+    constructor(app, drawers, finder) {
         this.app = app;
+        this.drawers = drawers;
+        this.finder = finder;
         this.named = el('div', { class: 'tools', role: 'group', 'aria-label': 'Views of the city' });
         this.list = el('ol', { class: 'bookmarks' });
         this.name = el('input', {
@@ -40,6 +42,7 @@ export class Places {
             el(
                 'div',
                 { class: 'body' },
+                finder.root,
                 el('h3', { text: 'Views of the city' }),
                 this.named,
                 el('h3', { text: 'Bookmarks' }),
@@ -58,6 +61,11 @@ export class Places {
         );
         app.on('welcome', () => this.#welcome());
         document.addEventListener('pointerdown', (event) => event.target.closest?.('#stage') && this.stop());
+    }
+
+    find() {
+        this.drawers.show('Places', false);
+        this.finder.field.focus();
     }
 
     cameras() {

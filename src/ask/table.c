@@ -1,0 +1,89 @@
+/* The table of a ranking as CSV. */
+#include "ask/ask.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Names are strangers' words: spreadsheets run what begins like a formula, and an apostrophe makes it text to them. */
+static void csv_text(FILE *out, const char *text) {
+    fputs(",\"", out);
+    if (*text && strchr("=+-@", *text))
+        putc('\'', out);
+    for (const char *p = text; *p; p++) {
+        if (*p == '"')
+            putc('"', out);
+        putc((unsigned char)*p < ' ' ? ' ' : *p, out);
+    }
+    putc('"', out);
+}
+
+static void csv_number(FILE *out, double v, int decimals) {
+    if (!isfinite(v))
+        putc(',', out);
+    else if (decimals < 0)
+        fprintf(out, ",%.6g", v);
+    else
+        fprintf(out, ",%.*f", decimals, v);
+}
+
+static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report, const noc_influence_row *row,
+                    size_t rank) {
+    const noc_emitter *e = &row->emitter;
+    const noc_report_lamp *lamp = noc_report_find_lamp(report, e->light);
+    noc_scene_info info;
+    noc_light_info light;
+    double at[3] = { e->centre[0], e->centre[1], e->centre[2] }, kelvin = NAN;
+    noc_scene_get_info(scene, &info);
+    if (*info.given_crs && noc_scene_from_local(scene, NULL, at))
+        at[0] = at[1] = at[2] = NAN;
+    if (!noc_scene_get_light(scene, e->light, &light) && !light.removed)
+        kelvin = noc_rgb_kelvin(light.light.emission);
+    const double numbers[] = { row->lux.value, row->lux.error, row->share.value, row->share.error };
+    fprintf(out, "%zu", rank);
+    csv_text(out, e->name);
+    csv_text(out, noc_emitter_kind_name(e->kind));
+    csv_text(out, e->of);
+    for (int k = 0; k < 4; k++)
+        csv_number(out, numbers[k], -1);
+    for (int k = 0; k < 3; k++)
+        csv_number(out, at[k], 3);
+    csv_number(out, row->distance, 2);
+    csv_number(out, e->lumens, -1);
+    csv_number(out, kelvin, 0);
+    csv_text(out, e->inferred ? "inferred" : lamp ? "mapped" : "");
+    csv_text(out, lamp ? lamp->street : "");
+    csv_text(out, lamp ? lamp->file : "");
+    csv_text(out, lamp ? lamp->profile : "");
+    putc('\n', out);
+}
+
+static void csv_rest(FILE *out, const char *kind, noc_estimate lux, noc_estimate share) {
+    fprintf(out, ",\"\",\"%s\",\"\",%.6g,%.6g,%.6g,%.6g,,,,,,,\"\",\"\",\"\",\"\"\n", kind, lux.value, lux.error,
+            share.value, share.error);
+}
+
+char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows, size_t count,
+                        const noc_influence_sum *sum) {
+    char *text = NULL;
+    size_t size;
+    if (!scene || !sum || (count && !rows)) {
+        noc_null(NULL, __func__);
+        return NULL;
+    }
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile\n",
+          out);
+    for (size_t i = 0; i < count; i++)
+        csv_row(out, scene, report, &rows[i], i + 1);
+    csv_rest(out, "sky", sum->sky, sum->sky_share);
+    csv_rest(out, "all", sum->lux, (noc_estimate){ 1, 0 });
+    bool bad = ferror(out);
+    if (fclose(out) || bad) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
