@@ -116,6 +116,40 @@ static int hot_cell(const view_city *city, int k, double x) {
 
 static double distance2(const double a[2], const double b[2]) { return hypot(a[0] - b[0], a[1] - b[1]); }
 
+#define BESIDE 60.0    /* m from a building within which lights are the city's */
+#define FEW_BESIDE 0.5 /* of all weights: where fewer are, lamps lie over an area much greater than the buildings */
+
+/* Lamps of a whole district around a few streets of buildings: only those beside buildings count. h as it is where most
+ * lights are beside buildings, and where there are none of either. */
+static void weigh_by_buildings(view_city *city, double *h) {
+    const noc_scene *s = city->scene;
+    size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)4 * SAMPLES);
+    double cell[2], all = 0, beside = 0;
+    bool *near = noc_calloc(HOT_CELLS * HOT_CELLS, sizeof(*near));
+    city->no_memory = city->no_memory || !near;
+    for (int k = 0; k < 2; k++)
+        cell[k] = NOC_MAX((city->max[k] - city->min[k]) / HOT_CELLS, 1e-6);
+    int rx = (int)NOC_MIN(ceil(BESIDE / cell[0]), HOT_CELLS), ry = (int)NOC_MIN(ceil(BESIDE / cell[1]), HOT_CELLS);
+    for (size_t i = 0; near && i < n; i++) {
+        size_t t = noc_scene_city_triangle(s, i * triangles / n);
+        noc_class cls = s->materials.data[s->triangle_material.data[t]].cls;
+        if (cls != NOC_CLASS_WALL && cls != NOC_CLASS_ROOF)
+            continue;
+        const float *p = s->positions.data + 3 * (size_t)s->indices.data[3 * t];
+        int x = hot_cell(city, 0, (double)p[0]), y = hot_cell(city, 1, (double)p[1]);
+        for (int v = NOC_MAX(y - ry, 0); v <= NOC_MIN(y + ry, HOT_CELLS - 1); v++)
+            for (int u = NOC_MAX(x - rx, 0); u <= NOC_MIN(x + rx, HOT_CELLS - 1); u++)
+                near[v * HOT_CELLS + u] = true;
+    }
+    for (int i = 0; near && i < HOT_CELLS * HOT_CELLS; i++) {
+        all += h[i];
+        beside += near[i] ? h[i] : 0;
+    }
+    for (int i = 0; near && i < HOT_CELLS * HOT_CELLS && beside > 0 && beside < FEW_BESIDE * all; i++)
+        h[i] = near[i] ? h[i] : 0;
+    free(near);
+}
+
 /* The densest lit part: the best window of a histogram of weights, the middle of the city where nothing shines. */
 static void find_hot(view_city *city) {
     double *h = noc_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
@@ -135,6 +169,7 @@ static void find_hot(view_city *city) {
     for (size_t i = 0; i < n; i++)
         if (source_get(city, i, &l) && (lamps < 8 || l.lamp))
             h[hot_cell(city, 1, l.p[1]) * HOT_CELLS + hot_cell(city, 0, l.p[0])] += NOC_MIN(l.weight, 200.0);
+    weigh_by_buildings(city, h);
     int rx = (int)NOC_CLAMP(50 / NOC_MAX(cell[0], 1e-6), 1, 12),
         ry = (int)NOC_CLAMP(50 / NOC_MAX(cell[1], 1e-6), 1, 12);
     for (int y = 0; y < HOT_CELLS; y++)

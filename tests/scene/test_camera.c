@@ -304,6 +304,28 @@ static void test_plain_street(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Two rows of houses with lamps between them, in a district of many more lamps and of no houses. */
+static void test_lamps_beyond_houses(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_box(scene, NOC_CLASS_TERRAIN, -3000, -3000, 3000, 3000, -1, 0);
+    for (int i = 0; i < 12; i++)
+        for (int side = -1; side <= 1; side += 2)
+            add_box(scene, NOC_CLASS_WALL, 12 * i, side > 0 ? 8 : -20, 12 * i + 11.5, side > 0 ? 20 : -8, 0, 12);
+    for (int i = 0; i < 400; i++) { /* the densest are far from any house */
+        bool there = i < 20;
+        noc_light lamp = { .kind = NOC_LIGHT_POINT,
+                           .position = { there ? 7.0 * i : -2500 + 12 * (i % 20), there ? 4 : 2000 + 12 * (i / 20), 6 },
+                           .emission = { 90, 90, 90 } };
+        assert_true(noc_scene_add_light(scene, &lamp) >= 0);
+    }
+    noc_camera street, aerial;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1.5, &street), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, 1.5, &aerial), NOC_OK);
+    assert_true(fabs(street.eye[1]) < 60 && street.eye[0] > -60 && street.eye[0] < 200);
+    assert_true(hypot(aerial.target[0] - 70, aerial.target[1]) < 150);
+    noc_scene_destroy(scene);
+}
+
 static void test_odd_scenes(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     noc_camera c = noc_camera_default();
@@ -375,11 +397,17 @@ static void test_slits(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights),
-                                        cmocka_unit_test(test_one_lamp),     cmocka_unit_test(test_object),
-                                        cmocka_unit_test(test_room),         cmocka_unit_test(test_plain_street),
-                                        cmocka_unit_test(test_panel),        cmocka_unit_test(test_no_warning),
-                                        cmocka_unit_test(test_odd_scenes),   cmocka_unit_test(test_stray),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city),
+                                        cmocka_unit_test(test_without_lights),
+                                        cmocka_unit_test(test_one_lamp),
+                                        cmocka_unit_test(test_object),
+                                        cmocka_unit_test(test_room),
+                                        cmocka_unit_test(test_plain_street),
+                                        cmocka_unit_test(test_panel),
+                                        cmocka_unit_test(test_no_warning),
+                                        cmocka_unit_test(test_lamps_beyond_houses),
+                                        cmocka_unit_test(test_odd_scenes),
+                                        cmocka_unit_test(test_stray),
                                         cmocka_unit_test(test_slits) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
