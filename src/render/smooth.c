@@ -173,10 +173,12 @@ static noc_status check(const noc_smoother *s, const noc_view *view, const noc_s
     return NOC_OK;
 }
 
-/* As noc_view_image has it, or exposure would be metered otherwise while a picture moves: a pixel, and those around. */
+/* As noc_view_image has it, or exposure would be metered otherwise while a picture moves: a pixel, and those around.
+ * What emitters add is remembered for a few frames: pixels that have some of it are theirs, too. */
 static void mark_emitters(noc_image *image, const uint32_t *what) {
     int width = image->width, height = image->height;
-    memset(image->emitter, 0, (size_t)width * (size_t)height);
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        image->emitter[i] = image->coverage[4 * i + 3] > 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             if ((what[(size_t)y * (size_t)width + (size_t)x] & 3) != NOC_ROW_EMITTER)

@@ -11,10 +11,12 @@
 #define RESTING_QUALITY 92
 #define MOST_SMOOTHED 3e5 /* pixels: a smoother takes some 330 bytes each */
 #define ADAPTS_IN 0.4     /* s: exposure follows the picture with that time constant */
+#define MOST_APART 0.35   /* EV: pictures that move are metered so far from those at rest, at most */
+#define TELLING 6         /* pictures after a rest that tell it */
 #define LOOKS_AWAY 5.0    /* s: nobody looks where a picture was not shown for so long */
 
 noc_status panes_init(panes *p, viewer_world *world, outbox *box, noc_log *log, const look *first) {
-    *p = (panes){ .world = world, .box = box, .log = log, .exposure = NAN, .change = 1 };
+    *p = (panes){ .world = world, .box = box, .log = log, .exposure = NAN, .moved = TELLING, .change = 1 };
     p->encoder = noc_image_encoder_create(log);
     p->pane[0].look = *first;
     return p->encoder ? panes_set_layout(p, WIRE_SINGLE) : NOC_ERR_MEMORY;
@@ -176,14 +178,22 @@ static bool reserve(panes *p, int width, int height) {
 }
 
 /* Automatic exposure that does not flicker: it follows that of the first pane's pictures in a while, and all panes have
- * the same. */
-static void expose(panes *p, int which, const noc_image *image, double now) {
+ * the same. Of a coarse and smoothed picture the meter sees other peaks than of a whole one: exposure is kept while the
+ * first of them after a rest tell how far it is off, and then they are corrected by that. */
+static void expose(panes *p, int which, const noc_image *image, bool moves, double now) {
     double found = which && !isnan(p->exposure) ? NAN : noc_image_auto_ev100(image);
     if (isnan(found))
         return;
+    if (moves && p->moved < TELLING) {
+        p->apart += (fmax(-MOST_APART, fmin(p->exposure - found, MOST_APART)) - p->apart) / ++p->moved;
+        p->exposed = now;
+        return;
+    }
+    found += moves ? p->apart : 0;
     double share = isnan(p->exposure) ? 1 : 1 - exp(-(now - p->exposed) / ADAPTS_IN);
     p->exposure = isnan(p->exposure) ? found : p->exposure + share * (found - p->exposure);
     p->exposed = now;
+    p->moved = moves ? p->moved : 0;
 }
 
 /* Takes a picture that the library has made. */
@@ -257,7 +267,7 @@ static noc_status draw_numbers(panes *p, int which, wire_head *head) {
 }
 
 /* The picture of a look as sRGB in p->rgb. */
-static noc_status draw(panes *p, int which, double now, wire_head *head) {
+static noc_status draw(panes *p, int which, const panes_picture *what, wire_head *head) {
     pane *from = &p->pane[which];
     noc_image *own = from->calm ? NULL : noc_view_image(from->view);
     const noc_image *image = from->calm ? from->calm : own;
@@ -266,7 +276,7 @@ static noc_status draw(panes *p, int which, double now, wire_head *head) {
     head->flags |= from->calm ? WIRE_SMOOTHED : 0;
     noc_display_params display = from->look.display;
     if (display.auto_exposure) {
-        expose(p, which, image, now);
+        expose(p, which, image, what->moves, what->now);
         display.auto_exposure = isnan(p->exposure);
         display.ev100 = p->exposure - display.compensation;
     }
@@ -391,7 +401,7 @@ noc_status panes_publish(panes *p, int which, const panes_picture *what) {
                        .seconds = (float)f->wall_seconds };
     noc_status status = !of->view       ? draw_difference(p, &head)
                         : of->look.show ? draw_numbers(p, which, &head)
-                                        : draw(p, which, what->now, &head);
+                                        : draw(p, which, what, &head);
     unsigned char *message = NULL;
     size_t size = 0;
     status = status ? status : encode(p, &head, what->moves, &message, &size);

@@ -36,6 +36,8 @@ typedef struct panes {
     pane pane[WIRE_PANES];
     look own;                 /* of pane 0 before all methods were shown, to go back to */
     double exposure, exposed; /* EV100 that pictures have now, and when it was found; NaN: none was */
+    double apart;             /* EV that the meter of moving pictures is below that of those at rest */
+    int moved;                /* pictures after a rest that have told it */
     bool has_map;             /* there is one around the city */
     uint64_t change;          /* counts what makes other pictures: input, options, edits */
 } panes;

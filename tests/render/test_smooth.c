@@ -81,6 +81,15 @@ static void marks_emitters(void **state) {
     assert_non_null(memchr(own->emitter, 1, N));
     assert_non_null(memchr(own->emitter, 0, N));
     noc_image_destroy(own);
+    for (int frame = 0; frame < 6; frame++) { /* what they added before is seen for a while */
+        c.target[2] += .3;
+        assert_int_equal(noc_view_render(v, &c, &p, NULL), NOC_OK);
+        image = noc_smoother_step(smoother, v, NULL);
+        own = noc_view_image(v);
+        for (int i = 0; i < N; i++)
+            assert_int_equal(image->emitter[i], own->emitter[i] || image->coverage[4 * i + 3] > 0);
+        noc_image_destroy(own);
+    }
     noc_smoother_destroy(smoother);
     close_view(v);
     noc_scene_destroy(s);

@@ -151,6 +151,26 @@ def test_layouts(p):
     c.close()
 
 
+def test_a_picture_that_moves_is_as_bright(p):
+    c = enter(p, 960, 540)
+    c.say("set", name="frames", value="8")
+    c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 8)
+    for _ in range(2): # a picture later exposure has followed
+        c.say("set", name="tonemap", value="reinhard")
+        time.sleep(0.5)
+        c.say("set", name="tonemap", value="filmic")
+        rest = said(c, "stats")["ev100"]
+        c.picture()
+    moving = []
+    for n in range(1, 13):
+        c.say("input", n=n, turn=[0.0005, 0])
+        figures = said(c, "stats")
+        picture = c.picture()
+        moving += [figures["ev100"]] if picture.moving else []
+    assert len(moving) > 4 and all(abs(ev - rest) < 0.15 for ev in moving), (rest, moving)
+    c.close()
+
+
 def test_a_mode_that_changes_in_mid_frame(p):
     """What only shows otherwise breaks a frame off, at times one of another size, which leaves no picture."""
     c = enter(p, 1280, 720)
