@@ -92,9 +92,16 @@ typedef struct noc_patch {
     float p[3], u[3], v[3]; /* corner and edges, local metres */
     float n[3];             /* unit normal, on the side whose light is asked for */
     float weight;           /* of its mean in the region's: m2; of points any unit */
-    uint32_t material;      /* of the scene, for luminance; NOC_NO_MATERIAL: none */
+    uint32_t material;      /* of the scene, for luminance and its class; NOC_NO_MATERIAL: none */
+    bool textured;          /* luminance is that of the material's texture, too, in whose image it lies at: */
+    float image[2], image_u[2], image_v[2]; /* corner and edges, as noc_mesh.uv says places */
+    float level; /* that the image is seen in: 0 as fine as it is, 1 with texels of twice the width, ... */
 } noc_patch;
 #define NOC_NO_MATERIAL UINT32_MAX
+
+/* The point that a ray has hit. ray and next: that one and the one through the pixel below, and the texture is seen as
+ * coarse as such a pixel; NULL: as fine as it is. */
+NOC_API noc_patch noc_hit_patch(const noc_hit *hit, double weight, const noc_ray *ray, const noc_ray *next);
 
 typedef struct noc_region noc_region;
 
@@ -196,6 +203,13 @@ typedef struct noc_influence_sum {
     uint64_t restarts;      /* times that it began anew, for the scene was edited */
 } noc_influence_sum;
 
+/* What surfaces of one class of the region get: a building's walls. */
+typedef struct noc_influence_class {
+    noc_class cls;    /* NOC_CLASS_OTHER of parts without a material */
+    double weight;    /* of its parts: m2 of a surface */
+    noc_estimate lux; /* mean illuminance over them; NaN: no sample fell on it yet */
+} noc_influence_class;
+
 typedef struct noc_ranking noc_ranking;
 
 typedef struct noc_ranking_params {
@@ -233,11 +247,19 @@ NOC_API noc_status noc_ranking_refine(noc_ranking *ranking, const noc_ranking_ta
 NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows, size_t count, size_t *found,
                                    noc_influence_sum *sum);
 
-/* These rows, then the sky and the sum, as CSV with a head of names: what nocturne influence --csv writes. Places are
- * in the scene's CRS, local metres where it has none; the report, which may be NULL, tells of lamps. free() it. NULL:
- * no memory, or a pointer that should not be NULL, which is reported. */
+/* The illuminance of the first `count` classes that the region has, the one with the greatest weight first; *found gets
+ * how many were filled. Each class gets at least a 32nd of the samples, so that small ones are known, too.
+ * NOC_ERR_ARGUMENT: nothing was estimated yet. */
+NOC_API noc_status noc_ranking_get_classes(noc_ranking *ranking, noc_influence_class *classes, size_t count,
+                                           size_t *found);
+
+/* These rows, then the sky, the sum and what classes of surfaces get (if there are any: m2 of them and of all, too), as
+ * CSV with a head of names: what nocturne influence --csv writes. Places are in the scene's CRS, local metres where it
+ * has none; the report, which may be NULL, tells of lamps. free() it. NULL: no memory, or a pointer that should not be
+ * NULL, which is reported. */
 NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
-                                size_t count, const noc_influence_sum *sum);
+                                size_t count, const noc_influence_sum *sum, const noc_influence_class *classes,
+                                size_t class_count);
 
 #ifdef __cplusplus
 }

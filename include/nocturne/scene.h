@@ -478,6 +478,8 @@ typedef struct noc_hit {
     int object;       /* for noc_scene_object_name, as NOC_AOV_OBJECT has it */
     int instance;     /* for noc_scene_set_transform; -1: it stands in no instance */
     int light;        /* whose shape or window the surface is, though it be out; -1: of none */
+    double texels;    /* a metre, along the surface, of the material's texture as it lies there; 0: none is seen */
+    double image[2];  /* place in its image, as noc_mesh.uv says it */
 } noc_hit;
 
 /* noc_view_cast, or what does the same, as who lies below the renderer asks for rays; user is the caller's. */

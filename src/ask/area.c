@@ -53,35 +53,75 @@ noc_status ask_add_line(const asked *a, const noc_street *street, double beside,
     return status;
 }
 
-static bool inside(const noc_rings *rings, const double p[2]) {
-    bool in = false;
+/* A side of a polygon, its lower end first. */
+typedef struct side {
+    double low[2], high[2];
+} side;
+
+typedef struct sides {
+    NOC_ARRAY(side) of;
+} sides;
+
+static int by_low_end(const void *a, const void *b) {
+    const side *x = a, *y = b;
+    return x->low[1] < y->low[1] ? -1 : x->low[1] > y->low[1];
+}
+
+/* Level ones are left out: no line to the side crosses them. */
+static noc_status sides_of(const asked *a, const noc_rings *rings, sides *out) {
     const double *xy = rings->xy;
     for (size_t r = 0; r < rings->count; xy += 2 * rings->size[r++])
         for (size_t i = 0, n = rings->size[r], j = n - 1; i < n; j = i++) {
-            const double *a = xy + 2 * i, *b = xy + 2 * j;
-            if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-                in = !in;
+            bool up = xy[2 * j + 1] < xy[2 * i + 1];
+            const double *low = xy + 2 * (up ? j : i), *high = xy + 2 * (up ? i : j);
+            side s = { { low[0], low[1] }, { high[0], high[1] } };
+            if (low[1] < high[1] && !array_push(&out->of, s))
+                return noc_no_memory(a->log, "region");
         }
+    if (out->of.len)
+        qsort(out->of.data, out->of.len, sizeof(side), by_low_end);
+    return NOC_OK;
+}
+
+/* Is it to the right of an odd number of sides? */
+static bool inside(const side *of, size_t count, const double p[2]) {
+    bool in = false;
+    for (size_t i = 0; i < count; i++) {
+        const double *a = of[i].low, *b = of[i].high;
+        if (a[1] <= p[1] && p[1] < b[1] && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+            in = !in;
+    }
     return in;
 }
 
+/* Row by row, with the sides that a row meets. */
 noc_status ask_add_rings(const asked *a, const noc_rings *rings, ask_cells *cells) {
+    sides all = { 0 }, met = { 0 };
     double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY }, step = cells->step;
-    size_t points = 0;
-    for (size_t r = 0; r < rings->count; r++)
-        points += rings->size[r];
-    for (size_t i = 0; i < 2 * points; i++) {
-        lo[i % 2] = fmin(lo[i % 2], rings->xy[i]);
-        hi[i % 2] = fmax(hi[i % 2], rings->xy[i]);
-    }
-    noc_status status = NOC_OK;
-    for (int32_t x = (int32_t)floor(lo[0] / step); x * step <= hi[0] && !status; x++)
-        for (int32_t y = (int32_t)floor(lo[1] / step); y * step <= hi[1] && !status; y++) {
+    noc_status status = sides_of(a, rings, &all);
+    for (size_t i = 0; i < all.of.len; i++)
+        for (int k = 0; k < 2; k++) {
+            lo[k] = fmin(lo[k], fmin(all.of.data[i].low[k], all.of.data[i].high[k]));
+            hi[k] = fmax(hi[k], fmax(all.of.data[i].low[k], all.of.data[i].high[k]));
+        }
+    size_t next = 0;
+    for (int32_t y = all.of.len ? (int32_t)floor(lo[1] / step) : 0; all.of.len && y * step <= hi[1] && !status; y++) {
+        size_t left = 0;
+        for (size_t i = 0; i < met.of.len; i++)
+            if (met.of.data[i].high[1] > y * step)
+                met.of.data[left++] = met.of.data[i];
+        met.of.len = left;
+        for (; next < all.of.len && all.of.data[next].low[1] <= (y + 1) * step && !status; next++)
+            status = array_push(&met.of, all.of.data[next]) ? NOC_OK : noc_no_memory(a->log, "region");
+        for (int32_t x = (int32_t)floor(lo[0] / step); x * step <= hi[0] && !status; x++) {
             double at[2];
             place_of(key_of(x, y), step, at);
-            if (inside(rings, at))
+            if (inside(met.of.data, met.of.len, at))
                 status = push(a, cells, key_of(x, y));
         }
+    }
+    array_free(&all.of);
+    array_free(&met.of);
     return status;
 }
 
@@ -104,11 +144,7 @@ static noc_status look_down(const asked *a, noc_ray *rays, noc_hit *hits, size_t
                 rays[left] = rays[i];
                 rays[left++].origin[2] = h->place[2] - 1e-3;
             } else if (classes >> h->cls & 1) {
-                noc_patch p = { .weight = (float)(step * step), .material = (uint32_t)h->material };
-                for (int k = 0; k < 3; k++) {
-                    p.p[k] = (float)h->place[k];
-                    p.n[k] = (float)h->normal[k];
-                }
+                noc_patch p = noc_hit_patch(h, step * step, NULL, NULL);
                 status = noc_region_add(a->to, &p, 1);
                 ++*found;
             }

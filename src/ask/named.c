@@ -96,9 +96,11 @@ noc_status ask_street(const asked *a) {
     noc_status status = add_streets(a, step, PAVEMENT, roads, &found, &looked);
     if (!status && !found)
         status = add_streets(a, step, 0, ground, &found, &looked);
-    return status || found ? status
-                           : noc_error(a->log, NOC_ERR_ARGUMENT,
-                                       "region: street \"%.60s\" has no ground that is seen from above", a->text);
+    char said[64];
+    return status || found
+               ? status
+               : noc_error(a->log, NOC_ERR_ARGUMENT, "region: street \"%s\" has no ground that is seen from above",
+                           noc_text_clean(said, sizeof(said), a->text));
 }
 
 /* ---- polygons ---- */
@@ -146,9 +148,10 @@ static noc_status to_local(const asked *a, noc_rings *rings) {
 
 noc_status ask_polygon(const asked *a) {
     noc_rings rings;
-    bool wkt = strchr(a->text, '(') != NULL;
-    if (!wkt && !a->params->files)
-        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: polygon: needs WKT, POLYGON((X Y, X Y, ...))");
+    bool wkt = strchr(a->text, '(') || noc_ieq(a->text, "POLYGON EMPTY") || noc_ieq(a->text, "MULTIPOLYGON EMPTY");
+    if (!wkt && (!a->params->files || !*a->text))
+        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: polygon: needs %sWKT, POLYGON((X Y, X Y, ...))",
+                         a->params->files ? "a file, or " : "");
     noc_status status = wkt ? noc_rings_parse(a->text, &rings, a->log) : noc_rings_read(a->text, &rings, a->log);
     if (status != NOC_OK)
         return status;

@@ -3,28 +3,31 @@
 
 #include <math.h>
 
+#define FARTHEST 1e6 /* m; polygons have cells whose numbers are of 32 bits */
+
 enum { RECT_RAYS = 16384 }; /* of a rectangle at most; each stands for some pixels then */
 
 noc_status ask_to_local(const asked *a, double xyz[3]) {
     noc_scene_info info;
     noc_scene_get_info(a->scene, &info);
     bool none = !a->params->crs && !*info.given_crs;
-    return none ? NOC_OK : noc_scene_to_local(a->scene, a->params->crs, xyz);
+    noc_status status = none ? NOC_OK : noc_scene_to_local(a->scene, a->params->crs, xyz);
+    for (int k = 0; k < 3 && !status; k++)
+        if (!(fabs(xyz[k]) < FARTHEST))
+            status = noc_error(a->log, NOC_ERR_ARGUMENT, "region: it lies more than 1000 km away from the scene");
+    return status;
 }
 
 static bool unit(double n[3]) {
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3 && length > 0; k++)
+    double length = hypot(hypot(n[0], n[1]), n[2]);
+    bool usable = length > 1e-300 && isfinite(length);
+    for (int k = 0; k < 3 && usable; k++)
         n[k] /= length;
-    return length > 0;
+    return usable;
 }
 
-static noc_status add(const asked *a, const double at[3], const double normal[3], int material) {
-    noc_patch p = { .weight = 1, .material = material >= 0 ? (uint32_t)material : NOC_NO_MATERIAL };
-    for (int k = 0; k < 3; k++) {
-        p.p[k] = (float)at[k];
-        p.n[k] = (float)normal[k];
-    }
+static noc_status add(const asked *a, const noc_hit *hit, const noc_ray *ray, const noc_ray *next) {
+    noc_patch p = noc_hit_patch(hit, 1, ray, next);
     return noc_region_add(a->to, &p, 1);
 }
 
@@ -37,7 +40,7 @@ static noc_status add_under(const asked *a, const double at[3], double reach) {
     noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
     if (status != NOC_OK)
         return status;
-    return hit.hit ? add(a, hit.place, hit.normal, hit.material)
+    return hit.hit ? add(a, &hit, NULL, NULL)
                    : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no surface at point:%.60s", a->text);
 }
 
@@ -50,9 +53,11 @@ noc_status ask_point(const asked *a) {
     noc_status status = ask_to_local(a, n);
     if (status != NOC_OK)
         return status;
-    if (placed)
-        return unit(n + 3) ? add(a, n, n + 3, -1)
-                           : noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s faces nowhere", a->text);
+    if (placed) {
+        noc_hit meter = { .place = { n[0], n[1], n[2] }, .normal = { n[3], n[4], n[5] }, .material = -1 };
+        return unit(meter.normal) ? add(a, &meter, NULL, NULL)
+                                  : noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s faces nowhere", a->text);
+    }
     noc_scene_info info;
     noc_scene_get_info(a->scene, &info);
     bool found = noc_scene_ground(a->scene, n[0], n[1], &ground);
@@ -75,12 +80,14 @@ static noc_status check_picture(const asked *a, const double *at, size_t count) 
 
 /* The surface that is seen there; nothing is added where there is none. */
 static noc_status add_seen(const asked *a, double x, double y) {
-    noc_ray ray;
+    const noc_region_params *p = a->params;
+    noc_ray ray, next;
     noc_hit hit;
-    if (noc_camera_ray(a->params->camera, a->params->width, a->params->height, (double[2]){ x, y }, &ray) != NOC_OK)
+    if (noc_camera_ray(p->camera, p->width, p->height, (double[2]){ x, y }, &ray) != NOC_OK ||
+        noc_camera_ray(p->camera, p->width, p->height, (double[2]){ x, y + 1 }, &next) != NOC_OK)
         return noc_error(a->log, NOC_ERR_ARGUMENT, "region: the camera looks nowhere");
     noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
-    return status != NOC_OK || !hit.hit ? status : add(a, hit.place, hit.normal, hit.material);
+    return status != NOC_OK || !hit.hit ? status : add(a, &hit, &ray, &next);
 }
 
 static noc_status check_seen(const asked *a) {

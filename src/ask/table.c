@@ -55,31 +55,44 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
     csv_text(out, lamp ? lamp->street : "");
     csv_text(out, lamp ? lamp->file : "");
     csv_text(out, lamp ? lamp->profile : "");
+    fputs(",\n", out);
+}
+
+/* A line that is no light's. area: of what gets it, m2; NaN: that is no area. */
+static void csv_rest(FILE *out, const char *name, const char *kind, noc_estimate lux, noc_estimate share, double area) {
+    const double numbers[] = { lux.value, lux.error, share.value, share.error };
+    fprintf(out, ",\"%s\",\"%s\",\"\"", name, kind);
+    for (int k = 0; k < 4; k++)
+        csv_number(out, numbers[k], -1);
+    fputs(",,,,,,,\"\",\"\",\"\",\"\"", out);
+    csv_number(out, area, -1);
     putc('\n', out);
 }
 
-static void csv_rest(FILE *out, const char *kind, noc_estimate lux, noc_estimate share) {
-    fprintf(out, ",\"\",\"%s\",\"\",%.6g,%.6g,%.6g,%.6g,,,,,,,\"\",\"\",\"\",\"\"\n", kind, lux.value, lux.error,
-            share.value, share.error);
-}
-
 char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows, size_t count,
-                        const noc_influence_sum *sum) {
+                        const noc_influence_sum *sum, const noc_influence_class *classes, size_t class_count) {
     char *text = NULL;
     size_t size;
-    if (!scene || !sum || (count && !rows)) {
+    double area = class_count ? 0 : NAN;
+    if (!scene || !sum || (count && !rows) || (class_count && !classes)) {
         noc_null(NULL, __func__);
         return NULL;
     }
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
-    fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile\n",
+    fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile,"
+          "area\n",
           out);
     for (size_t i = 0; i < count; i++)
         csv_row(out, scene, report, &rows[i], i + 1);
-    csv_rest(out, "sky", sum->sky, sum->sky_share);
-    csv_rest(out, "all", sum->lux, (noc_estimate){ 1, 0 });
+    for (size_t i = 0; i < class_count; i++)
+        area += classes[i].weight;
+    csv_rest(out, "", "sky", sum->sky, sum->sky_share, NAN);
+    csv_rest(out, "", "all", sum->lux, (noc_estimate){ 1, 0 }, area);
+    for (size_t i = 0; i < class_count; i++)
+        csv_rest(out, noc_class_name(classes[i].cls), "class", classes[i].lux, (noc_estimate){ NAN, NAN },
+                 classes[i].weight);
     bool bad = ferror(out);
     if (fclose(out) || bad) {
         free(text);

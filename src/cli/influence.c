@@ -13,7 +13,8 @@ static const noc_option own_options[] = {
     { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",
       "instead of a region: a lamp, what is known of it, and what it lights" },
     { "top", "Influence", NOC_OPTION_INT, offsetof(A, top), 1, 1000000, NULL, "", "rows: the strongest so many" },
-    { "csv", "Influence", NOC_OPTION_TEXT, offsetof(A, csv), 0, 0, NULL, "FILE", "write all rows as CSV, too" },
+    { "csv", "Influence", NOC_OPTION_TEXT, offsetof(A, csv), 0, 0, NULL, "FILE",
+      "write all rows as CSV, too; - = instead of the table" },
     { "json", "Influence", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
     { "error", "Influence", NOC_OPTION_REAL, offsetof(A, error), 1e-6, 1, NULL, "",
       "relative standard error of the greatest share to end at" },
@@ -130,12 +131,19 @@ static int check(influence_args *args) {
                           : cli_usage(&cli_influence, "--region is needed, point:X,Y, for one; or --lamp");
     if (args->lamp && args->csv)
         return cli_usage(&cli_influence, "--csv is for --region");
+    if (args->classes && (args->lamp || strncmp(args->region, "object:", 7) != 0))
+        return cli_usage(&cli_influence, "--class is for --region object:ID");
+    if (args->json && influence_csv_alone(args))
+        return cli_usage(&cli_influence, "--json and --csv - exclude each other: both write to standard output");
     int status = parse_classes(args);
     status = status ? status : cli_choose_camera(render);
     if (status)
         return status;
     cli_add_named(&render->common, &render->import);
-    return cli_check_city(render);
+    status = cli_check_city(render);
+    return status || !args->csv || influence_csv_alone(args)
+               ? status
+               : cli_check_output(&cli_influence, args->csv, CLI_ANY, &render->common);
 }
 
 static bool show(void *user, const char *what, double done) {
@@ -148,6 +156,9 @@ static bool show(void *user, const char *what, double done) {
 static bool has_eye(const influence_args *args) {
     return !strncmp(args->region, "pixel:", 6) || !strncmp(args->region, "rect:", 5);
 }
+
+/* Parts of the others weigh as much as their areas. */
+static bool has_area(const influence_args *args) { return !has_eye(args) && strncmp(args->region, "point:", 6) != 0; }
 
 static noc_status ask(influence_job *job) {
     influence_args *args = job->args;
@@ -169,7 +180,10 @@ static noc_status ask(influence_job *job) {
     cli_progress_clear();
     job->rows = cli_alloc((size_t)args->top * sizeof(*job->rows));
     status = status ? status : noc_ranking_get(ranking, job->rows, (size_t)args->top, &job->count, &job->sum);
-    status = status ? status : influence_print(job);
+    if (!status && has_area(args))
+        status = noc_ranking_get_classes(ranking, job->classes, NOC_CLASS_COUNT, &job->class_count);
+    if (!status && !influence_csv_alone(args))
+        status = influence_print(job);
     if (!status && args->csv) { /* of all that was found */
         free(job->rows);
         job->rows = cli_alloc((job->sum.emitters + 1) * sizeof(*job->rows));

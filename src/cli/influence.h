@@ -29,6 +29,8 @@ typedef struct influence_job {
     noc_influence_row *rows;
     size_t count;
     noc_influence_sum sum;
+    noc_influence_class classes[NOC_CLASS_COUNT]; /* where the region is one of areas */
+    size_t class_count;
 } influence_job;
 
 /* influence_lamp.c: --lamp */
@@ -36,7 +38,8 @@ noc_status influence_tell_lamp(influence_job *job);
 
 /* influence_out.c */
 void influence_json_tags(const char *tags);
-noc_status influence_print(influence_job *job); /* the table, or JSON */
+noc_status influence_print(influence_job *job);       /* the table, or JSON */
+bool influence_csv_alone(const influence_args *args); /* in place of the table: --csv - */
 noc_status influence_write_csv(influence_job *job);
 
 #endif

@@ -1,6 +1,7 @@
 /* What nocturne influence prints and writes: a row an emitter, then what is left, the sky and the sum. */
 #include "influence.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,20 +72,36 @@ static void print_rest(const char *name, noc_estimate lux, noc_estimate share) {
     printf("  %s\n", name);
 }
 
+static void print_classes(const influence_job *job) {
+    if (!job->class_count)
+        return;
+    printf("%10s%9s %9s  %s\n", "lx", "", "m2", "of its surfaces");
+    for (size_t i = 0; i < job->class_count; i++) {
+        const noc_influence_class *c = &job->classes[i];
+        if (isfinite(c->lux.value))
+            print_estimate(c->lux, false);
+        else
+            printf(" %9s %9s", "-", "");
+        printf(" %9.*f  %s\n", c->weight < 100 ? 1 : 0, c->weight, noc_class_name(c->cls));
+    }
+}
+
 static noc_status print_table(influence_job *job) {
     const noc_influence_sum *s = &job->sum;
     const noc_region_info *r = &job->region_info;
     double at[3] = { r->centre[0], r->centre[1], r->centre[2] };
-    char a[64], b[64];
+    char a[64], b[64], region[100];
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
         return NOC_ERR_ARGUMENT;
-    printf("%s: %s %.3f %.3f %.3f in %s\n", job->args->region, r->point ? "at" : "around", at[0], at[1], at[2],
+    noc_text_clean(region, sizeof(region), job->args->region);
+    printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
            *job->info.given_crs ? job->info.given_crs : "local metres");
     printf("%s lx ± %.2g by %s%s\n", cli_number(a, s->lux.value), s->lux.error, noc_text_many(b, s->emitters, "light"),
            s->sky.value > 0 ? " and the sky" : "");
     if (s->luminance.value > 0)
         printf("%s cd/m2 ± %.2g towards the camera, without what shines itself\n", cli_number(a, s->luminance.value),
                s->luminance.error);
+    print_classes(job);
     if (job->count)
         printf("%10s%9s %7s %6s   %-8s %8s %8s %6s  %s\n", "lx", "", "share %", "", "kind", "m away", "lm", "K",
                "name, street, file");
@@ -187,7 +204,17 @@ static noc_status print_json(influence_job *job) {
     json_number("samples", (double)s->samples);
     json_number("rays", (double)s->rays);
     json_number("seconds", s->seconds);
-    printf(",\n  \"rows\": [");
+    if (job->class_count)
+        json_number("area", job->region_info.weight);
+    printf(",\n  \"classes\": [");
+    for (size_t i = 0; i < job->class_count; i++) {
+        printf("%s    {\"class\": \"%s\"", i ? ",\n" : "\n", noc_class_name(job->classes[i].cls));
+        json_number("area", job->classes[i].weight);
+        printf(", ");
+        json_estimate("lux", job->classes[i].lux);
+        printf("}");
+    }
+    printf("],\n  \"rows\": [");
     for (size_t i = 0; i < job->count; i++) {
         fputs(i ? ",\n" : "\n", stdout);
         json_row(job, &job->rows[i]);
@@ -198,19 +225,25 @@ static noc_status print_json(influence_job *job) {
 
 noc_status influence_print(influence_job *job) { return job->args->json ? print_json(job) : print_table(job); }
 
+bool influence_csv_alone(const influence_args *args) { return args->csv && !strcmp(args->csv, "-"); }
+
 noc_status influence_write_csv(influence_job *job) {
-    FILE *out = fopen(job->args->csv, "w");
+    bool alone = influence_csv_alone(job->args);
+    FILE *out = alone ? stdout : fopen(job->args->csv, "w");
+    char shown[120];
+    noc_text_clean(shown, sizeof(shown), job->args->csv);
     if (!out) {
-        cli_error("%s: cannot be written", job->args->csv);
+        cli_error("%s: cannot be written: %s", shown, strerror(errno));
         return NOC_ERR_IO;
     }
-    char *text = noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum);
+    char *text =
+        noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum, job->classes, job->class_count);
     if (text)
         fputs(text, out);
     bool bad = !text || ferror(out);
     free(text);
-    if (fclose(out) || bad) {
-        cli_error("%s: not all of it could be written", job->args->csv);
+    if (!alone && (fclose(out) || bad)) { /* standard output is looked at in the end */
+        cli_error("%s: not all of it could be written", shown);
         return NOC_ERR_IO;
     }
     return NOC_OK;

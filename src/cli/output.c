@@ -48,7 +48,8 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
         return cli_usage(command, "%s must end in .obj", shown);
     if ((endings & CLI_NOCT) && !has_ending(path, ".noct"))
         return cli_usage(command, "%s must end in .noct", shown);
-    if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr) && !(endings & (CLI_OBJ | CLI_NOCT | CLI_MP4)))
+    if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr) &&
+        !(endings & (CLI_OBJ | CLI_NOCT | CLI_MP4 | CLI_ANY)))
         return cli_usage(command, "%s must end in .png%s: the ending decides the format", shown,
                          endings & CLI_EXR ? " or .exr" : "");
     if (exists && !S_ISREG(st.st_mode)) {

@@ -4,6 +4,40 @@
 #include <math.h>
 #include <stdatomic.h>
 
+static noc_region *sorted(const noc_scene *scene, const noc_region *region) {
+    noc_scene_lock_read(scene);
+    noc_region *r = noc_region_sorted(region, scene);
+    noc_scene_unlock_read(scene);
+    return r;
+}
+
+/* A class gets samples by its weight, and at least one in so many. */
+enum { LEAST_SAMPLES = 32 };
+
+static void share_samples(noc_ranking *r) {
+    const noc_scene *scene = r->view->scene;
+    size_t n = r->region->patches.len;
+    double all = 0, samples = 0;
+    noc_scene_lock_read(scene);
+    for (size_t i = 0; i < n; i++)
+        r->weight[noc_patch_class(&r->region->patches.data[i], scene)] += r->region->patches.data[i].weight;
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        all += r->weight[c];
+    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
+        double least = fmax(1, all / (LEAST_SAMPLES * r->weight[c])); /* times as many as its weight wants */
+        r->counts[c] = r->weight[c] > 0 ? 1 / least : 0;
+        samples += r->weight[c] > 0 ? r->weight[c] * least : 0;
+    }
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        r->counts[c] *= samples / all;
+    r->before[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+        const noc_patch *p = &r->region->patches.data[i];
+        r->before[i + 1] = r->before[i] + p->weight / r->counts[noc_patch_class(p, scene)];
+    }
+    noc_scene_unlock_read(scene);
+}
+
 noc_ranking *noc_ranking_create(noc_view *view, const noc_region *region, const noc_ranking_params *params) {
     if (!view || !region) {
         noc_null(view ? view->log : NULL, __func__);
@@ -19,7 +53,7 @@ noc_ranking *noc_ranking_create(noc_view *view, const noc_region *region, const 
     if (noc_render_check(&render, view->log) != NOC_OK)
         return NULL;
     noc_ranking *r = noc_calloc(1, sizeof(*r));
-    if (!r || !(r->region = noc_region_sorted(region)) ||
+    if (!r || !(r->region = sorted(view->scene, region)) ||
         !(r->before = noc_alloc((r->region->patches.len + 1) * sizeof(*r->before)))) {
         noc_ranking_destroy(r);
         noc_no_memory(view->log, "influence");
@@ -31,9 +65,7 @@ noc_ranking *noc_ranking_create(noc_view *view, const noc_region *region, const 
     r->seen = params->eye != NULL;
     for (int k = 0; k < 3 && params->eye; k++)
         r->eye[k] = (float)params->eye[k];
-    r->before[0] = 0;
-    for (size_t i = 0; i < r->region->patches.len; i++)
-        r->before[i + 1] = r->before[i] + (double)r->region->patches.data[i].weight;
+    share_samples(r);
     return r;
 }
 

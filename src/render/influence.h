@@ -24,7 +24,8 @@ typedef struct ranking_sums {
 
 typedef struct ranking_batch {
     ranking_sums sums;
-    double all, sky, luminance; /* sums over samples */
+    double all, sky, luminance;                           /* sums over samples */
+    double lux[NOC_CLASS_COUNT], points[NOC_CLASS_COUNT]; /* the same of each class; what its samples stood for */
     uint64_t rays;
     bool refused; /* memory */
 } ranking_batch;
@@ -48,7 +49,9 @@ typedef struct ranking_list {
 struct noc_ranking {
     noc_view *view;
     noc_region *region; /* sorted */
-    double *before;     /* [patches + 1] weights before each of them */
+    double *before; /* [patches + 1] samples that fall before each of them, in the mean, in units of their weights */
+    double weight[NOC_CLASS_COUNT]; /* of the patches of each class */
+    double counts[NOC_CLASS_COUNT]; /* what a sample of each class counts: its weight over its samples */
     bool point;
     noc_render_params params;
     bool seen; /* somebody's luminance is asked for */

@@ -15,9 +15,11 @@ struct core_context {
     const noc_tree *tree;
     const noc_environment *environment;
     const noc_map_light *map_light;
+    const uint32_t *texels;
 };
 
 #include "core/shading.h"
+#include "core/texture.h"
 #include "core/tree.h"
 
 FN light light_load(CTX u32 i) { return light_of_record(ctx->lights[i]); }
@@ -31,6 +33,7 @@ FN tree_pair tree_load(CTX u32 i) {
     memcpy(&p, ctx->tree->pairs + i, sizeof(p));
     return p;
 }
+FN u32 texel_load(CTX u32 place) { return ctx->texels[place]; }
 FN v3 environment_texel(CTX u32 i) { return splat3(ctx->environment->light + 3 * (size_t)i); }
 FN v3 backdrop_texel(CTX u32 i) { return splat3(ctx->environment->texels + 3 * (size_t)i); }
 FN real environment_sine(CTX u32 row) { return ctx->map_light->sines[row]; }

@@ -16,7 +16,15 @@ enum { DIM_RANKING_PLACE = 512 };
 typedef struct ask {
     uint32_t emitter; /* NOC_NO_EMITTER: the sky */
     float lux, luminance;
+    noc_class cls; /* of the surface that asks */
 } ask;
+
+/* A place of the region. */
+typedef struct place {
+    surf y;
+    noc_class cls;
+    float counts; /* how much of a sample it is: ranking.counts of its class */
+} place;
 
 typedef struct drawing {
     noc_ranking *r;
@@ -42,6 +50,7 @@ static void flush(drawing *d) {
         if (!clear[i])
             continue;
         b->all += a->lux;
+        b->lux[a->cls] += a->lux;
         b->luminance += a->luminance;
         if (a->emitter == NOC_NO_EMITTER)
             b->sky += a->lux;
@@ -59,11 +68,13 @@ static void push(drawing *d, segment s, uint32_t towards, ask a) {
 /* ---- what a light brings ---- */
 
 /* weight: 1 over the probability, or number, of such samples. */
-static void look_at(drawing *d, surf y, uint32_t light_index, float u, float v, float weight) {
+static void look_at(drawing *d, const place *at, uint32_t light_index, float u, float v, float weight) {
     const struct core_context *ctx = &d->core;
+    surf y = at->y;
     light l = light_load(ctx, light_index);
     light_sample s = shining_sample(ctx, l, y.p, u, v);
-    ask a = { d->r->emitters.of[light_index], light_lux(s, y.n) * weight, 0 };
+    weight *= at->counts;
+    ask a = { d->r->emitters.of[light_index], light_lux(s, y.n) * weight, 0, at->cls };
     if (!(a.lux > 0))
         return;
     if (d->r->seen && dot3(y.n, y.wo) > 0)
@@ -72,8 +83,9 @@ static void look_at(drawing *d, surf y, uint32_t light_index, float u, float v, 
 }
 
 /* A white surface shows over pi what lights it. The sky's rays are drawn for that one, whatever y is made of. */
-static void look_up(drawing *d, surf y, uint32_t key, uint32_t number, float share) {
+static void look_up(drawing *d, const place *at, uint32_t key, uint32_t number, float share) {
     const struct core_context *ctx = &d->core;
+    surf y = at->y;
     bool map = d->core.frame->flags & FRAME_MAP_LIGHTS;
     if (!map && !(d->core.frame->sky > 0))
         return;
@@ -82,8 +94,8 @@ static void look_up(drawing *d, surf y, uint32_t key, uint32_t number, float sha
     white.f0 = 0;
     white.alpha = 1;
     segment way = sky_ray(ctx, white, key, number, d->by->ray_offset);
-    v3 c = sky_shade(ctx, white, way.d, share);
-    ask a = { NOC_NO_EMITTER, luminance(c) * CORE_PI, 0 };
+    v3 c = sky_shade(ctx, white, way.d, share * at->counts);
+    ask a = { NOC_NO_EMITTER, luminance(c) * CORE_PI, 0, at->cls };
     if (!(a.lux > 0 && a.lux < 1e30f))
         return;
     v3 wi = mul3(way.d, SKY_REACH_BACK);
@@ -96,7 +108,7 @@ static void look_up(drawing *d, surf y, uint32_t key, uint32_t number, float sha
 
 /* A place in a triangle for a number in [0, 1): its digits to base 4 choose quarters of quarters, so that numbers that
  * lie evenly make places that do (Basu and Owen 2015, "Low discrepancy constructions in the triangle"). */
-static void place_in(const noc_patch *patch, double t, float out[3]) {
+static void place_in(double t, double at[2]) {
     double a[2] = { 0, 0 }, b[2] = { 1, 0 }, c[2] = { 0, 1 };
     for (int level = 0; level < 20; level++) {
         t *= 4;
@@ -109,34 +121,51 @@ static void place_in(const noc_patch *patch, double t, float out[3]) {
             c[k] = digit == 0 ? ab : digit == 1 ? ca : digit == 2 ? bc : c[k];
         }
     }
-    double u = (a[0] + b[0] + c[0]) / 3, v = (a[1] + b[1] + c[1]) / 3;
-    for (int k = 0; k < 3; k++)
-        out[k] = (float)(patch->p[k] + u * patch->u[k] + v * patch->v[k]);
+    at[0] = (a[0] + b[0] + c[0]) / 3;
+    at[1] = (a[1] + b[1] + c[1]) / 3;
 }
 
-/* The surface at weight t of all, 0..1. */
-static surf surface_at(const noc_ranking *r, double t) {
+/* The albedo as the renderer has it: the material's, and its texture's. */
+static v3 albedo_at(const struct core_context *ctx, const noc_scene *scene, const noc_patch *patch,
+                    const double at[2]) {
+    v3 albedo = splat3(scene->material_records.data[patch->material].albedo);
+    int texture = scene->materials.data[patch->material].texture;
+    if (!patch->textured || !texture)
+        return albedo;
+    float uv[2];
+    for (int k = 0; k < 2; k++)
+        uv[k] = (float)(patch->image[k] + at[0] * patch->image_u[k] + at[1] * patch->image_v[k]);
+    uint32_t first = scene->textures.data[texture - 1].place;
+    return tint3(texture_albedo(ctx, first, uv[0], uv[1], patch->level), albedo);
+}
+
+/* The surface at share t of all samples, 0..1. */
+static place place_at(const drawing *d, double t) {
+    const noc_ranking *r = d->r;
     size_t lo = 0, hi = r->region->patches.len;
-    double at = t * r->before[hi];
+    double sample = t * r->before[hi], at[2];
     while (hi - lo > 1) {
         size_t mid = (lo + hi) / 2;
-        *(r->before[mid] <= at ? &lo : &hi) = mid;
+        *(r->before[mid] <= sample ? &lo : &hi) = mid;
     }
     const noc_patch *patch = &r->region->patches.data[lo];
-    double part = (at - r->before[lo]) / (r->before[lo + 1] - r->before[lo]);
+    double part = (sample - r->before[lo]) / (r->before[lo + 1] - r->before[lo]);
     float p[3];
-    place_in(patch, NOC_CLAMP(part, 0, 1 - 0x1p-52), p);
+    place_in(NOC_CLAMP(part, 0, 1 - 0x1p-52), at);
+    for (int k = 0; k < 3; k++)
+        p[k] = (float)(patch->p[k] + at[0] * patch->u[k] + at[1] * patch->v[k]);
     surf s = { .p = splat3(p), .n = splat3(patch->n), .wo = splat3(patch->n) };
     const noc_scene *scene = r->view->scene;
     if (r->seen && patch->material < scene->material_records.len) {
         const noc_material_record *m = &scene->material_records.data[patch->material];
         v3 w = sub3(splat3(r->eye), s.p);
         s.wo = mul3(w, 1 / sqrtf(fmaxf(dot3(w, w), 1e-20f)));
-        s.albedo = splat3(m->albedo);
+        s.albedo = albedo_at(&d->core, scene, patch, at);
         s.f0 = m->f0;
         s.alpha = m->alpha;
     }
-    return s;
+    noc_class cls = noc_patch_class(patch, scene);
+    return (place){ s, cls, (float)r->counts[cls] };
 }
 
 /* ---- a point of a region ---- */
@@ -192,8 +221,9 @@ static size_t all_candidates(const drawing *d, candidate *out) {
 }
 
 /* Sends about RANKING_RAYS rays: to whatever is sure of one, and to the others by systematic sampling. */
-static void look_around(drawing *d, surf y, uint32_t key) {
+static void look_around(drawing *d, const place *at, uint32_t key) {
     const struct core_context *ctx = &d->core;
+    surf y = at->y;
     candidate c[RANKING_DRAWS];
     bool few = d->r->view->scene->lights.len <= RANKING_DRAWS;
     size_t n = few ? all_candidates(d, c) : d->by->tree->lights ? draw_candidates(d, y, key, c) : 0;
@@ -214,7 +244,7 @@ static void look_around(drawing *d, surf y, uint32_t key) {
             if (floor(sum) == floor(before))
                 continue;
         }
-        look_at(d, y, c[i].light, c[i].u, c[i].v, (float)(c[i].weight / NOC_MIN(expected, 1)));
+        look_at(d, at, c[i].light, c[i].u, c[i].v, (float)(c[i].weight / NOC_MIN(expected, 1)));
     }
     if (d->count >= MOST)
         flush(d);
@@ -225,10 +255,11 @@ static void draw_region(drawing *d) {
     uint64_t shift = (uint64_t)hash_u32(d->seed) << 32 | hash_u32(d->seed + 0x51ed270bu);
     for (uint64_t i = r->rounds * RANKING_POINTS; i < (r->rounds + 1) * RANKING_POINTS; i++) {
         double t = (double)((shift + i * GOLDEN) >> 11) * 0x1p-53;
-        surf y = surface_at(r, t);
+        place at = place_at(d, t);
         uint32_t key = rng_key(d->seed, (uint32_t)i, (uint32_t)(i >> 32));
-        look_around(d, y, key);
-        look_up(d, y, key, 0, 1);
+        look_around(d, &at, key);
+        look_up(d, &at, key, 0, 1);
+        d->b->points[at.cls] += at.counts;
     }
     flush(d);
 }
@@ -244,30 +275,31 @@ static void turn_place(uint32_t start, uint32_t number, float *u, float *v) {
 static void draw_point(drawing *d) {
     noc_ranking *r = d->r;
     const ranking_list *list = &r->list;
-    surf y = surface_at(r, 0.5);
+    place at = place_at(d, 0.5);
     uint32_t round = (uint32_t)r->rounds, key = rng_key(d->seed, 0, round);
     float u, v;
     for (size_t i = 0; i < list->certain; i++) {
         uint32_t turns = (uint32_t)list->turns.data[i], start = rng_bits(d->seed, DIM_RANKING_PLACE + (uint32_t)i);
         for (uint32_t k = 0; k < turns; k++) {
             turn_place(start, round * turns + k, &u, &v);
-            look_at(d, y, list->lights.data[i].light, u, v, 1 / (float)turns);
+            look_at(d, &at, list->lights.data[i].light, u, v, 1 / (float)turns);
         }
     }
-    size_t rest = list->lights.len - list->certain, at = 0;
+    size_t rest = list->lights.len - list->certain, next = 0;
     double all = rest ? list->before.data[rest] : 0, xi = rng(key, DIM_RAYS);
     for (int k = 0; k < list->draws && rest; k++) {
         double t = (k + xi) / list->draws * all;
-        while (at + 1 < rest && list->before.data[at + 1] <= t)
-            at++;
-        const ranking_light *l = &list->lights.data[list->certain + at];
+        while (next + 1 < rest && list->before.data[next + 1] <= t)
+            next++;
+        const ranking_light *l = &list->lights.data[list->certain + next];
         uint32_t bits = rng_bits(key, DIM_RANKING_PLACE + (uint32_t)k);
-        double probability = (list->before.data[at + 1] - list->before.data[at]) / all;
-        look_at(d, y, l->light, unit_low(bits), unit_high(bits), (float)(1 / (probability * list->draws)));
+        double probability = (list->before.data[next + 1] - list->before.data[next]) / all;
+        look_at(d, &at, l->light, unit_low(bits), unit_high(bits), (float)(1 / (probability * list->draws)));
     }
     enum { UP = 8 };
     for (uint32_t k = 0; k < UP; k++)
-        look_up(d, y, rng_key(d->seed, 1, 0), round * UP + k, 1.0f / UP);
+        look_up(d, &at, rng_key(d->seed, 1, 0), round * UP + k, 1.0f / UP);
+    d->b->points[at.cls] += at.counts;
     flush(d);
 }
 
@@ -281,7 +313,8 @@ void noc_ranking_draw(noc_ranking *r, const noc_asking *by, int batch) {
                             .profiles = scene->profile_cells.data,
                             .tree = by->tree,
                             .environment = scene->environment,
-                            .map_light = by->map_light },
+                            .map_light = by->map_light,
+                            .texels = scene->texels.data },
                   .seed = hash_u32(r->params.seed + hash_u32((uint32_t)batch + 0x2545f491u)) };
     if (r->point)
         draw_point(&d);

@@ -184,6 +184,39 @@ static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, 
         sum->rays += r->batch[b].rays;
 }
 
+static int heaviest_first(const void *a, const void *b) {
+    const noc_influence_class *x = a, *y = b;
+    if (x->weight != y->weight)
+        return x->weight > y->weight ? -1 : 1;
+    return (int)x->cls - (int)y->cls;
+}
+
+noc_status noc_ranking_get_classes(noc_ranking *r, noc_influence_class *classes, size_t count, size_t *found) {
+    if (!r || (count && !classes))
+        return noc_null(r ? r->view->log : NULL, __func__);
+    if (!r->rounds)
+        return noc_error(r->view->log, NOC_ERR_ARGUMENT, "influence: nothing was estimated yet");
+    noc_influence_class all[NOC_CLASS_COUNT];
+    size_t n = 0;
+    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
+        spread lux, points;
+        for (int b = 0; b < RANKING_BATCHES; b++) {
+            lux.part[b] = r->batch[b].lux[c];
+            points.part[b] = r->batch[b].points[c];
+        }
+        bool any = mean_of(&points).value > 0;
+        if (r->weight[c] > 0)
+            all[n++] = (noc_influence_class){ (noc_class)c, r->weight[c],
+                                              any ? ratio_of(&lux, &points) : (noc_estimate){ NAN, NAN } };
+    }
+    qsort(all, n, sizeof(*all), heaviest_first);
+    for (size_t i = 0; i < n && i < count; i++)
+        classes[i] = all[i];
+    if (found)
+        *found = NOC_MIN(n, count);
+    return NOC_OK;
+}
+
 noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count, size_t *found,
                            noc_influence_sum *sum) {
     if (!r || (count && !rows))

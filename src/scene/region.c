@@ -1,5 +1,6 @@
 /* Regions: what is asked about. */
 #include "scene/region.h"
+#include "scene/scene.h"
 
 #include <math.h>
 
@@ -68,6 +69,40 @@ void noc_region_get_info(const noc_region *r, noc_region_info *info) {
         info->centre[k] /= info->weight;
 }
 
+/* How wide a pixel is where its ray meets a surface, along it. */
+static double pixel_width(const noc_ray *ray, const noc_ray *next, const noc_hit *hit) {
+    double apart = 0, toward = 0, d2 = 0;
+    for (int k = 0; k < 3; k++) {
+        double step = next->direction[k] - ray->direction[k];
+        apart += step * step;
+        toward += hit->normal[k] * ray->direction[k];
+        d2 += ray->direction[k] * ray->direction[k];
+    }
+    return hit->distance * sqrt(apart) / fmax(fabs(toward), 0.01 * sqrt(d2));
+}
+
+noc_patch noc_hit_patch(const noc_hit *hit, double weight, const noc_ray *ray, const noc_ray *next) {
+    noc_patch p = { .weight = (float)weight, .material = NOC_NO_MATERIAL };
+    if (!hit)
+        return p;
+    for (int k = 0; k < 3; k++) {
+        p.p[k] = (float)hit->place[k];
+        p.n[k] = (float)hit->normal[k];
+    }
+    if (hit->material >= 0)
+        p.material = (uint32_t)hit->material;
+    p.textured = hit->texels > 0;
+    for (int k = 0; k < 2 && p.textured; k++)
+        p.image[k] = (float)hit->image[k];
+    if (p.textured && ray && next)
+        p.level = (float)log2(fmax(1, hit->texels * pixel_width(ray, next, hit)));
+    return p;
+}
+
+noc_class noc_patch_class(const noc_patch *p, const noc_scene *s) {
+    return p->material < s->materials.len ? s->materials.data[p->material].cls : NOC_CLASS_OTHER;
+}
+
 typedef struct sort_key {
     uint64_t key;
     uint32_t patch;
@@ -80,18 +115,18 @@ static int by_key(const void *a, const void *b) {
     return x->patch < y->patch ? -1 : x->patch > y->patch;
 }
 
-/* 20 bits a coordinate, one after the other from the highest on. */
-static uint64_t place_key(const double at[3], const double lo[3], double size) {
-    uint64_t key = 0, cell[3];
+/* The class, then 19 bits a coordinate, one after the other from the highest on. */
+static uint64_t place_key(noc_class cls, const double at[3], const double lo[3], double size) {
+    uint64_t key = (uint64_t)cls, cell[3];
     for (int k = 0; k < 3; k++)
-        cell[k] = (uint64_t)NOC_CLAMP((at[k] - lo[k]) / size * 0x1p20, 0, 0xfffff);
-    for (int bit = 19; bit >= 0; bit--)
+        cell[k] = (uint64_t)NOC_CLAMP((at[k] - lo[k]) / size * 0x1p19, 0, 0x7ffff);
+    for (int bit = 18; bit >= 0; bit--)
         for (int k = 0; k < 3; k++)
             key = key << 1 | (cell[k] >> bit & 1);
     return key;
 }
 
-noc_region *noc_region_sorted(const noc_region *from) {
+noc_region *noc_region_sorted(const noc_region *from, const noc_scene *scene) {
     noc_region *r = noc_region_create(NULL);
     size_t n = from->patches.len;
     sort_key *keys = noc_alloc(NOC_MAX(n, 1) * sizeof(*keys));
@@ -114,7 +149,7 @@ noc_region *noc_region_sorted(const noc_region *from) {
     for (size_t i = 0; i < n; i++) {
         double at[3];
         middle(&from->patches.data[i], at);
-        keys[i] = (sort_key){ place_key(at, lo, size), (uint32_t)i };
+        keys[i] = (sort_key){ place_key(noc_patch_class(&from->patches.data[i], scene), at, lo, size), (uint32_t)i };
     }
     qsort(keys, n, sizeof(*keys), by_key);
     for (size_t i = 0; i < n; i++)

@@ -17,8 +17,10 @@ static inline bool noc_patch_is_point(const noc_patch *p) {
     return true;
 }
 
-/* A copy whose patches lie along a curve through space, so that those that follow one another are neighbours. NULL: no
- * memory, not reported. */
-noc_region *noc_region_sorted(const noc_region *region) NOC_MUST_USE;
+/* The caller holds the scene for reading. */
+noc_class noc_patch_class(const noc_patch *patch, const noc_scene *scene);
+/* A copy whose patches are sorted by class, and those of a class along a curve through space, so that those that follow
+ * one another are neighbours. The caller holds the scene for reading. NULL: no memory, not reported. */
+noc_region *noc_region_sorted(const noc_region *region, const noc_scene *scene) NOC_MUST_USE;
 
 #endif

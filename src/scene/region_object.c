@@ -30,6 +30,13 @@ static bool add_triangle(const noc_scene *s, size_t t, noc_region *to) {
     for (int k = 0; k < 3; k++)
         p.n[k] = (float)(n[k] / length * (turned ? -1 : 1));
     p.weight = (float)(0.5 * length);
+    float at[3][2];
+    p.textured = noc_scene_image_corners(s, t, at);
+    for (int k = 0; k < 2 && p.textured; k++) {
+        p.image[k] = at[0][k];
+        p.image_u[k] = at[1][k] - at[0][k];
+        p.image_v[k] = at[2][k] - at[0][k];
+    }
     return array_push(&to->patches, p);
 }
 

@@ -384,6 +384,8 @@ static inline bool noc_material_shines(const noc_material *m) { /* closures are 
 }
 /* texture.c: words of the scene's texels that an image of that size takes */
 size_t noc_texture_words(int width, int height);
+/* Where a triangle's corners lie in the image of its material's texture; false: it shows none. */
+bool noc_scene_image_corners(const noc_scene *scene, size_t triangle, float at[3][2]);
 /* Does it show a light that was added as one? It emits as that does, and reflects nothing. */
 bool noc_material_of_light(const noc_material *m);
 

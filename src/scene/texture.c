@@ -71,6 +71,17 @@ static size_t texel_count(int width, int height, uint32_t *levels) {
     }
 }
 
+bool noc_scene_image_corners(const noc_scene *scene, size_t triangle, float at[3][2]) {
+    if (!scene->materials.data[scene->triangle_material.data[triangle]].texture)
+        return false;
+    const noc_scene_mesh *mesh = &scene->meshes.data[noc_scene_mesh_of(scene, triangle)];
+    const uint32_t *v = scene->indices.data + 3 * triangle;
+    for (int corner = 0; corner < 3 && mesh->uv; corner++)
+        memcpy(at[corner], scene->uv.data + 2 * (mesh->uv - 1 + (size_t)(v[corner] - mesh->first_vertex)),
+               2 * sizeof(float));
+    return mesh->uv;
+}
+
 size_t noc_texture_words(int width, int height) {
     uint32_t levels;
     return TEXTURE_HEAD + texel_count(width, height, &levels);

@@ -51,8 +51,22 @@ static json_t *rows_of(const noc_influence_row *rows, size_t count, const noc_in
     return list;
 }
 
+/* What a building's walls, roof, windows, ... get. */
+static json_t *classes_of(const noc_influence_class *classes, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++) {
+        json_t *row = json_object();
+        json_object_set_new(row, "class", json_string(noc_class_name(classes[i].cls)));
+        json_object_set_new(row, "area", ask_number(classes[i].weight));
+        json_object_set_new(row, "lux", ask_number(classes[i].lux.value));
+        json_object_set_new(row, "lux_error", ask_number(classes[i].lux.error));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
 /* All rows that were found. */
-static char *csv_of(const asker *a, noc_ranking *ranking) {
+static char *csv_of(const asker *a, noc_ranking *ranking, const noc_influence_class *classes, size_t class_count) {
     noc_influence_sum sum;
     size_t found = 0;
     char *text = NULL;
@@ -60,7 +74,8 @@ static char *csv_of(const asker *a, noc_ranking *ranking) {
         return NULL;
     noc_influence_row *rows = calloc(sum.emitters + 1, sizeof(*rows));
     if (rows && !noc_ranking_get(ranking, rows, sum.emitters, &found, &sum))
-        text = noc_influence_csv(world_scene(a->world), world_report(a->world), rows, found, &sum);
+        text =
+            noc_influence_csv(world_scene(a->world), world_report(a->world), rows, found, &sum, classes, class_count);
     free(rows);
     return text;
 }
@@ -75,12 +90,15 @@ static bool goes_on(void *user, const char *what, double done) {
 /* One answer of what is known by now. about: what is said of the place beside it; is not taken. */
 static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *about, double done) {
     noc_influence_row rows[ASK_ROWS];
+    noc_influence_class classes[NOC_CLASS_COUNT];
     noc_influence_sum sum;
-    size_t found;
+    size_t found, class_count = 0;
     if (noc_ranking_get(ranking, rows, ASK_ROWS, &found, &sum))
         return;
     json_t *m = ask_begin(q, done);
     json_object_update(m, about);
+    if (json_object_get(about, "area") && !noc_ranking_get_classes(ranking, classes, NOC_CLASS_COUNT, &class_count))
+        json_object_set_new(m, "classes", classes_of(classes, class_count));
     json_object_set_new(m, "lux", ask_number(sum.lux.value));
     json_object_set_new(m, "lux_error", ask_number(sum.lux.error));
     json_object_set_new(m, "luminance", ask_number(sum.luminance.value));
@@ -88,7 +106,7 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
     if (done >= 1)
-        ask_keep(a, q->id, csv_of(a, ranking));
+        ask_keep(a, q->id, csv_of(a, ranking, classes, class_count));
     ask_send(a, q, m);
 }
 
@@ -117,7 +135,7 @@ static void rank(asker *a, const question *q, const noc_region *region, json_t *
             break;
     }
     if (status == NOC_ERR_CANCELLED) /* who has enough may save what there is */
-        ask_keep(a, q->id, csv_of(a, ranking));
+        ask_keep(a, q->id, csv_of(a, ranking, NULL, 0));
     else if (status)
         ask_refuse(a, q, *a->wrong ? a->wrong : noc_status_text(status));
     noc_ranking_destroy(ranking);
@@ -143,17 +161,20 @@ static json_t *about_hit(const asker *a, const noc_hit *hit) {
     return about;
 }
 
-static noc_status cast(asker *a, const question *q, noc_hit *hit) {
+/* What the pixel sees, and its ray and the one below it. */
+static noc_status cast(asker *a, const question *q, noc_hit *hit, noc_ray ray[2]) {
     const ask_view *v = &q->view;
-    noc_ray ray;
-    noc_status status =
-        noc_camera_ray(&v->camera, v->width, v->height, (double[2]){ q->ask.x * v->width, q->ask.y * v->height }, &ray);
-    return status ? status : noc_view_cast(a->ask_view, &ray, 1, hit);
+    noc_status status = NOC_OK;
+    for (int i = 0; i < 2 && !status; i++)
+        status = noc_camera_ray(&v->camera, v->width, v->height,
+                                (double[2]){ q->ask.x * v->width, q->ask.y * v->height + i }, &ray[i]);
+    return status ? status : noc_view_cast(a->ask_view, ray, 1, hit);
 }
 
 void ask_pixel(asker *a, const question *q) {
     noc_hit hit;
-    noc_status status = cast(a, q, &hit);
+    noc_ray ray[2];
+    noc_status status = cast(a, q, &hit, ray);
     if (status || !hit.hit) { /* the sky has no place */
         if (status)
             ask_refuse(a, q, noc_status_text(status));
@@ -161,11 +182,7 @@ void ask_pixel(asker *a, const question *q) {
             ask_send(a, q, ask_begin(q, 1));
         return;
     }
-    noc_patch patch = { .weight = 1, .material = hit.material < 0 ? NOC_NO_MATERIAL : (uint32_t)hit.material };
-    for (int k = 0; k < 3; k++) {
-        patch.p[k] = (float)hit.place[k];
-        patch.n[k] = (float)hit.normal[k];
-    }
+    noc_patch patch = noc_hit_patch(&hit, 1, &ray[0], &ray[1]);
     noc_region *region = noc_region_create(a->log);
     json_t *about = about_hit(a, &hit);
     if (region && !noc_region_add(region, &patch, 1))

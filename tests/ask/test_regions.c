@@ -146,11 +146,38 @@ static void ground_is_what_is_seen_from_above(void **state) {
     noc_region_destroy(r);
 }
 
+/* A ring of a million corners, in the time that the ground takes; and one that crosses itself is its odd parts. */
+static void polygons_may_have_many_corners(void **state) {
+    const world *w = *state;
+    enum { CORNERS = 1000000, PLACE = 32 };
+    char *text = malloc(PLACE * (size_t)CORNERS + 64), *at = text;
+    at += sprintf(at, "polygon:POLYGON((");
+    for (int i = 0; i < CORNERS; i++) {
+        double bearing = 2 * M_PI * i / CORNERS, r = 10 + 0.001 * (i % 7);
+        at += sprintf(at, "%s%.6f %.6f", i ? ", " : "", 25 + r * cos(bearing), 30 + r * sin(bearing));
+    }
+    strcpy(at, "))");
+    noc_region_info i;
+    noc_region *r = find(w, text, &i);
+    assert_true(fabs(i.weight / (M_PI * 100) - 1) < 0.03);
+    noc_region_destroy(r);
+    free(text);
+    r = find(w, "polygon:POLYGON((10 20, 30 40, 30 20, 10 40))", &i); /* an hourglass */
+    assert_true(fabs(i.weight / 200 - 1) < 0.03);
+    noc_region_destroy(r);
+}
+
 static void wrong_ones_say_what_is_wrong(void **state) {
     const world *w = *state;
     static const struct {
         const char *text, *says;
     } wrong[] = {
+        { "point:1e300,0", "more than 1000 km away" },
+        { "point:0,0,1e308", "more than 1000 km away" },
+        { "point:0,0,3,1e-320,0,0", "faces nowhere" },
+        { "polygon:POLYGON((1e12 1e12, 2e12 1e12, 1e12 2e12))", "more than 1000 km away" },
+        { "polygon:", "needs a file, or WKT" },
+        { "polygon:POLYGON EMPTY", "POLYGON" },
         { "pont:1,2", "is it point: ?" },
         { "what", "does not begin with point:" },
         { "point:1", "is not X,Y" },
@@ -227,11 +254,9 @@ static void files_of_polygons(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_face_as_they_are_said),
-        cmocka_unit_test(objects_are_their_surfaces_by_area),
-        cmocka_unit_test(ground_is_what_is_seen_from_above),
-        cmocka_unit_test(wrong_ones_say_what_is_wrong),
-        cmocka_unit_test(files_of_polygons),
+        cmocka_unit_test(places_face_as_they_are_said),      cmocka_unit_test(objects_are_their_surfaces_by_area),
+        cmocka_unit_test(ground_is_what_is_seen_from_above), cmocka_unit_test(polygons_may_have_many_corners),
+        cmocka_unit_test(wrong_ones_say_what_is_wrong),      cmocka_unit_test(files_of_polygons),
     };
     return cmocka_run_group_tests(tests, open_world, close_world);
 }

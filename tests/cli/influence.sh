@@ -15,7 +15,8 @@ ask() { run influence map.osm --map-surfaces -q --sky 0 "$@"; }
 
 ask --region "street:Well Lane" --csv well.csv
 grep -q 'node/12, mapped\|node/12, Well Lane, map.osm' out && grep -q '^street:Well Lane: around' out &&
-    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 5 ]
+    grep -Eq '^ +[0-9.]+ ±[0-9.]+ +[0-9]+  road$' out && tail -n 1 well.csv | grep -q '^,"road","class",' &&
+    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 6 ]
 result $? "a street is lit by its lamps, the stronger one first"
 
 awk -F, 'NR > 1 && $1 != "" { share += $7; lux += $5 } /"all"/ { all = $5 }
@@ -32,6 +33,8 @@ assert rows[0]['street'] == 'Well Lane' and rows[0]['kind'] == 'lamp' and rows[0
 assert rows[0]['share'] > rows[1]['share'] > 0 and 0 < rows[0]['share_error'] <= .011 * rows[0]['share']
 assert rows[1]['tags'] == {'highway': 'street_lamp', 'lamp_type': 'led', 'note': 'by, the "well"'} or \
     'note' in rows[1]['tags'], rows[1]
+assert [c['class'] for c in j['classes']] == ['road'] and j['classes'][0]['area'] > 100, j
+assert abs(j['classes'][0]['lux'] - j['lux']) < 1e-6 * j['lux'] and j['classes'][0]['lux_error'] > 0, j
 assert abs(rows[0]['lumens'] - 9000) < 1 and j['lux'] > 0 and j['sky'] == 0
 PY
 result $? "JSON has names, streets, tags and errors"
@@ -71,5 +74,28 @@ expect "a street that is not there, and the nearest" 1 'no street "Well Lone"; i
     influence map.osm --region "street:Well Lone"
 expect "a class that is not there, and the nearest" 2 'is it wall' influence map.osm --region object:x --class wal
 expect "a kind of region that is not there" 1 'is it street:' influence map.osm --region stret:x
-echo "1..$count"
-exit $((failed > 0))
+
+# Outputs that cannot be are refused before any input is read: this one is not even there.
+for bad in /nonexistent/x.csv /tmp /dev/full; do
+    expect "no CSV to $bad, before the work" 1 'folder|no ordinary file' \
+        influence not-there.gml --region point:0,0 --csv "$bad"
+done
+cp map.osm kept.osm
+expect "an input is not overwritten" 1 'is an input too' influence map.osm --region point:0,0 --csv map.osm
+cmp -s map.osm kept.osm
+result $? "and stays as it is"
+ask --region "street:Well Lane" --csv - && head -n 1 out | grep -q '^rank,name,' && [ "$(wc -l <out)" = 6 ]
+result $? "--csv - writes CSV in place of the table"
+expect "one of two on standard output" 2 'exclude each other' influence map.osm --region point:0,0 --csv - --json
+expect "classes are those of objects" 2 'is for --region object' influence map.osm --region point:0,0 --class wall
+expect "and not of lamps" 2 'is for --region object' influence map.osm --lamp node/12 --class wall
+if [ -w /dev/full ]; then
+    "$program" influence map.osm --map-surfaces -q --region "street:Well Lane" >/dev/full 2>err
+    [ $? = 1 ] && grep -q 'No space left' err
+    result $? "a full disk is told"
+fi
+timeout --preserve-status -s INT 3 "$program" influence builtin:city -q --region "street:street 1" --error 1e-6 \
+    --time 0 >out 2>err </dev/null
+[ $? = 130 ] && grep -q interrupted err && [ ! -s out ]
+result $? "Ctrl-C ends it"
+finish

@@ -336,6 +336,13 @@ def test_who_lights_this(p):
     assert near(lamp["place"], answer["rows"][0]["place"], 0.01) and lamp["lumens"] > 0
     assert lamp["group"] == "lamps" and 1800 < lamp["kelvin"] < 7000, lamp
     assert ask(c, "region", id=3, pane=0, rect=[0.4, 0.8, 0.6, 0.95])["lux"] > 0
+    whole = ask(c, "region", id=6, pane=0, object=answer["object"])
+    areas = [one["area"] for one in whole["classes"]]
+    assert abs(sum(areas) / whole["area"] - 1) < 0.001 and areas == sorted(areas, reverse=True), whole
+    mean = sum(one["area"] * one["lux"] for one in whole["classes"]) / sum(areas)
+    assert abs(mean - whole["lux"]) < 6 * whole["lux_error"] + 0.05 * mean, (mean, whole)
+    assert all(one["class"] and one["lux_error"] >= 0 for one in whole["classes"])
+    assert "classes" not in answer
     c.say("save", id=9, what="csv", of=1)
     file = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2)
     name, text = file.body[:file.name_size].decode(), file.body[file.name_size:].decode()

@@ -8,18 +8,25 @@ enum { ALONE = 256 / BLOCK, ITEM = 32 }; /* blocks that the calling thread trace
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Place and unit normal on the triangle, in doubles. */
-static void place(const noc_scene *scene, const hitblock *h, int l, double p[3], double n[3]) {
-    const uint32_t *corner = scene->indices.data + 3 * (size_t)h->triangle[l];
-    double e[3], f[3];
+/* Edges from the first corner, and their product: twice the area along the normal. */
+static void edges(const noc_scene *scene, uint32_t triangle, double e[3], double f[3], double n[3]) {
+    const uint32_t *corner = scene->indices.data + 3 * (size_t)triangle;
     for (int k = 0; k < 3; k++) {
         double a = scene->positions.data[3 * (size_t)corner[0] + (size_t)k];
         e[k] = scene->positions.data[3 * (size_t)corner[1] + (size_t)k] - a;
         f[k] = scene->positions.data[3 * (size_t)corner[2] + (size_t)k] - a;
-        p[k] = a + h->u[l] * e[k] + h->v[l] * f[k];
     }
     for (int k = 0; k < 3; k++)
         n[k] = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
+}
+
+/* Place and unit normal on the triangle, in doubles. */
+static void place(const noc_scene *scene, const hitblock *h, int l, double p[3], double n[3]) {
+    const uint32_t *corner = scene->indices.data + 3 * (size_t)h->triangle[l];
+    double e[3], f[3];
+    edges(scene, h->triangle[l], e, f, n);
+    for (int k = 0; k < 3; k++)
+        p[k] = scene->positions.data[3 * (size_t)corner[0] + (size_t)k] + h->u[l] * e[k] + h->v[l] * f[k];
     if (h->instance[l] != NO_INSTANCE) {
         const float *m = scene->instances.data[h->instance[l]].transform;
         double q[3] = { p[0], p[1], p[2] }, t[3] = { n[0], n[1], n[2] };
@@ -31,6 +38,29 @@ static void place(const noc_scene *scene, const hitblock *h, int l, double p[3],
     double length = sqrt(dot(n, n));
     for (int k = 0; k < 3; k++)
         n[k] = length > 0 ? n[k] / length : k == 2;
+}
+
+/* Where it lies in its texture's image, and how fine that is there. */
+static void describe_image(const noc_scene *scene, const hitblock *h, int l, noc_hit *out) {
+    float at[3][2];
+    double u[2], v[2], e[3], f[3], n[3], scale2 = 1;
+    if (!noc_scene_image_corners(scene, h->triangle[l], at))
+        return;
+    for (int k = 0; k < 2; k++) {
+        u[k] = (double)at[1][k] - at[0][k];
+        v[k] = (double)at[2][k] - at[0][k];
+        out->image[k] = at[0][k] + h->u[l] * u[k] + h->v[l] * v[k];
+    }
+    edges(scene, h->triangle[l], e, f, n);
+    if (h->instance[l] != NO_INSTANCE) {
+        const float *t = scene->instances.data[h->instance[l]].transform;
+        const double m[3] = { t[0], t[4], t[8] };
+        scale2 = dot(m, m);
+    }
+    int texture = scene->materials.data[scene->triangle_material.data[h->triangle[l]]].texture;
+    uint32_t size = scene->texels.data[scene->textures.data[texture - 1].place + 2];
+    double texels = fabs(u[0] * v[1] - v[0] * u[1]) * (size & 0xffff) * (size >> 16);
+    out->texels = sqrt(texels / fmax(scale2 * sqrt(dot(n, n)), 1e-30));
 }
 
 static void describe(const noc_scene *scene, const noc_ray *ray, const hitblock *h, int l, noc_hit *out) {
@@ -50,6 +80,7 @@ static void describe(const noc_scene *scene, const noc_ray *ray, const hitblock 
         out->normal[k] *= front ? 1 : -1;
     }
     out->distance = sqrt(dot(way, way));
+    describe_image(scene, h, l, out);
     if (light == NOC_NO_LIGHT)
         return;
     out->light = (int)(instance != NO_INSTANCE ? scene->instances.data[instance].lights[light] : light);

@@ -111,9 +111,8 @@ static void look_up(const cpu_view *s, const rayblock *rays, const hitblock *h, 
     for (int l = 0; l < BLOCK; l++) {
         if (h->triangle[l] == NO_HIT)
             continue;
-        int texture = scene->materials.data[g->material[l]].texture;
-        const noc_scene_mesh *mesh = texture ? &scene->meshes.data[noc_scene_mesh_of(scene, h->triangle[l])] : NULL;
-        if (!mesh || !mesh->uv)
+        float at[3][2];
+        if (!noc_scene_image_corners(scene, h->triangle[l], at))
             continue;
         float apart = 0, toward = 0, d2 = 0, scale2 = 1;
         const float n[3] = { g->nx[l], g->ny[l], g->nz[l] };
@@ -127,13 +126,11 @@ static void look_up(const cpu_view *s, const rayblock *rays, const hitblock *h, 
             const float *m = scene->instances.data[h->instance[l]].transform;
             scale2 = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
         }
-        image.place[l] = scene->textures.data[texture - 1].place;
+        image.place[l] = scene->textures.data[scene->materials.data[g->material[l]].texture - 1].place;
         image.width[l] = h->t[l] * sqrtf(apart * d2 / scale2) / NOC_MAX(fabsf(toward), 0.01f * sqrtf(d2));
-        const uint32_t *v = scene->indices.data + 3 * (size_t)h->triangle[l];
         for (int corner = 0; corner < 3; corner++)
             for (int k = 0; k < 2; k++)
-                image.at[corner][k][l] =
-                    scene->uv.data[2 * (mesh->uv - 1 + (size_t)(v[corner] - mesh->first_vertex)) + (size_t)k];
+                image.at[corner][k][l] = at[corner][k];
         lanes |= 1u << l;
     }
     if (lanes)

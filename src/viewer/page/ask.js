@@ -235,8 +235,39 @@ export class Ask {
                 ['illuminance', this.#estimate(answer.lux, answer.lux_error, 'lx')],
                 ['luminance', this.#estimate(answer.luminance, answer.luminance_error, 'cd/m²')],
             ]),
+            this.#classes(answer.classes ?? []),
             lamp,
         ].filter((one) => one);
+    }
+
+    // What a building's walls, roof and windows get; a street's road and pavements.
+    #classes(classes) {
+        if (classes.length < 2) return null;
+        const cell = (text) => el('td', { class: 'figure', text });
+        return el(
+            'table',
+            { class: 'rows surfaces' },
+            el('caption', { class: 'hidden', text: 'Illuminance of its surfaces' }),
+            el(
+                'thead',
+                {},
+                el('tr', {}, ...['surface', 'm²', 'lx', '±'].map((text) => el('th', { scope: 'col', text }))),
+            ),
+            el(
+                'tbody',
+                {},
+                ...classes.map((one) =>
+                    el(
+                        'tr',
+                        {},
+                        el('td', { text: one.class }),
+                        cell(number(one.area)),
+                        cell(one.lux === null ? '' : number(one.lux)),
+                        cell(one.lux_error > 0 ? number(one.lux_error, 2) : ''),
+                    ),
+                ),
+            ),
+        );
     }
 
     #estimate(value, error, unit) {
