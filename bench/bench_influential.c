@@ -2,7 +2,7 @@
  *
  *   bench_influential [SCENE [VIEW [WIDTH HEIGHT [FRAMES [SEEDS]]]]]
  *
- * default: city street 48 27 256 20. SCENE may also be panes:COUNT, towers with so many shining windows.
+ * default: builtin:city street 48 27 256 20. SCENE may also be panes:COUNT, towers with so many shining windows.
  *
  * All surfaces are made matte and grey, so that what brings the most luminance brings the most light. Brute force is a
  * ranking of each pixel's point, which looks at all lights, until the greatest share is known to 1 in 300, or
@@ -270,7 +270,7 @@ static bool time_pass(const bench *b, noc_render_params told) {
 }
 
 int main(int argc, char **argv) {
-    const char *spec = argc > 1 ? argv[1] : "city", *which = argc > 2 ? argv[2] : "street";
+    const char *spec = argc > 1 ? argv[1] : "builtin:city", *which = argc > 2 ? argv[2] : "street";
     int width = argc > 4 ? atoi(argv[3]) : 48, height = argc > 4 ? atoi(argv[4]) : 27;
     bench b = { .frames = argc > 5 ? atoi(argv[5]) : 256, .seeds = argc > 6 ? atoi(argv[6]) : 20 };
     bool towers = !strncmp(spec, "panes:", 6);
