@@ -330,6 +330,8 @@ static noc_camera camera;
     P(noc_ranking_destroy(NULL), true)                                                                                 \
     P(0, noc_ranking_refine(NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
     P(0, noc_ranking_get(NULL, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_ranking_get_classes(NULL, NULL, 0, NULL) == NOC_ERR_ARGUMENT)                                             \
+    P(noc_hit_patch(NULL, 1, NULL, NULL), true)                                                                        \
     P(0, noc_view_trace_floor(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
 #define NAME(call, check) #call " / " #check,
