@@ -129,8 +129,21 @@ FN1 u1 bits_of_f1(f1 x) {
 typedef float real __attribute__((vector_size(4 * CORE_LANES)));
 typedef uint32_t u32 __attribute__((vector_size(4 * CORE_LANES)));
 typedef int32_t mask __attribute__((vector_size(4 * CORE_LANES)));
-#define K(x) ((real){ 0 } + (float)(x))
-#define KU(x) ((u32){ 0 } + (uint32_t)(x))
+#define K(x) real_in_lanes((float)(x))
+#define KU(x) u32_in_lanes((uint32_t)(x))
+#if CORE_LANES == 4
+#define IN_LANES(x)                                                                                                    \
+    { x, x, x, x }
+#elif CORE_LANES == 8
+#define IN_LANES(x)                                                                                                    \
+    { x, x, x, x, x, x, x, x }
+#else
+#define IN_LANES(x)                                                                                                    \
+    { x, x, x, x, x, x, x, x, x, x, x, x, x, x, x, x }
+#endif
+/* {0} + x would be an addition, for it makes 0 of -0 */
+FN real real_in_lanes(float x) { return (real)IN_LANES(x); }
+FN u32 u32_in_lanes(uint32_t x) { return (u32)IN_LANES(x); }
 /* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY, lane_bits, lane_sum for this instruction set */
 #include "core/wide.h"
 #define and_(a, b) ((a) & (b))

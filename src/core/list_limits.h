@@ -22,4 +22,11 @@
 #define LIST_SPARE LIST_GROUPS
 #define LIST_CHOSEN 256
 
+/* Shapes of lights in brief (core/list_sketch.h), and words of a sketch. */
+#define SKETCH_NONE 0u /* only the light itself tells */
+#define SKETCH_ROUND 1u
+#define SKETCH_FLAT 2u
+#define SKETCH_TWO_SIDED 3u
+#define SKETCH_WORDS 11
+
 #endif

@@ -1,7 +1,8 @@
 /* core/list_rays.h: several shadow rays a pixel over its tile's list. Asking: a pixel weighs all entries, and shares
  * its rays out over them systematically; using: what the rays found becomes light, or one sample that stands for all.
- * How many rays, and which entries, is steered by what is expected of the lights' visibility (core/learned.h). No mean
- * depends on that, as long as it was settled before any of these rays.
+ * How many rays, and which entries, is steered by what is expected of the lights' visibility (core/learned.h), and by
+ * lights in brief where they are far (core/list_sketch.h). No mean depends on that, as long as it was settled before
+ * any of these rays, and each is divided by the very weight that chose it.
  *
  * Includers supply the bridge below: what one pixel (in C, LANES pixels) knows of each entry and of each of its rays.
  */
@@ -9,9 +10,10 @@
 #define CORE_LIST_RAYS_H
 
 #include "core/learned.h"
+#include "core/list_sketch.h"
 #include "core/lists.h"
 
-/* Sums over all entries: target * share, and target * expect, cd/m2. */
+/* Sums over all entries: steer * share, and steer * expect, cd/m2. steer: the target, about, where a light is far. */
 struct list_sums {
     real all;
     real bright;
@@ -39,10 +41,9 @@ typedef struct list_kept list_kept;
 #endif
 
 FN list_prior prior_load(CTX u1 i); /* of entry i, for the surfaces at hand */
-FN real prior_share(CTX u32 i);     /* each lane its own entry's */
 FN u32 entry_light(CTX u32 i);
 FN real entry_weight(CTX u32 i);
-FN void weighed_store(CTX u1 i, real weighed); /* target * share of entry i */
+FN void weighed_store(CTX u1 i, real weighed); /* steer * share of entry i */
 FN real weighed_load(CTX u1 i);
 FN real weighed_at(CTX u32 i);
 FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times); /* ray number `ray` of the lanes in `on` */
@@ -52,17 +53,34 @@ FN real found_w(CTX u1 ray);                                      /* 0 where the
 
 /* ---- ask ---- */
 
+/* What entry i is weighed by, with the place that it is evaluated at where it is near. */
+FN real list_steer(CTX surf s, sketch_surf q, mask on, u1 i, u32 shift_u, u32 shift_v) {
+    u1 shape = sketch_shape(PASS i);
+    mask near = on;
+    real p = K(0.0f);
+    if (shape != SKETCH_NONE) {
+        list_sketch k = sketch_load(PASS i);
+        real d2 = sketch_distance2(k, s.p);
+        near = and_(on, sketch_near(k, q, d2));
+        p = sel(on, sketch_target(s, q, k, shape, d2), p);
+    }
+    if (ANY(near)) {
+        light l = light_splat(PASS entry_load(PASS i).light);
+        p = sel(near, target(PASS s, l, list_u(shift_u, KU(i)), list_v(shift_v, KU(i))), p);
+    }
+    return p;
+}
+
 FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
     list_sums sums;
     sums.all = K(0.0f);
     sums.bright = K(0.0f);
     u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
+    sketch_surf q = sketch_surf_of(s);
     for (u1 i = 0u; i < count; i++) {
         list_prior b = prior_load(PASS i);
-        real p =
-            target(PASS s, light_splat(PASS entry_load(PASS i).light), list_u(shift_u, KU(i)), list_v(shift_v, KU(i)));
-        p = sel(on, p, K(0.0f));
+        real p = list_steer(PASS s, q, on, i, shift_u, shift_v);
         EXACT real w = p * K(b.share);
         weighed_store(PASS i, w);
         EXACT real all = sums.all + w;
@@ -126,17 +144,15 @@ FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
     return rays;
 }
 
-/* The ray to an entry that was drawn so often. */
-FN list_ray list_ask(CTX list_sums sums, real n, u32 key, u32 entry, real times) {
+/* The ray to an entry that was drawn so often. There is none to a place that brings nothing. */
+FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, u32 entry, real times) {
     list_ray r;
-    real weighed = weighed_at(PASS entry);
-    EXACT real p = weighed / prior_share(PASS entry);
-    EXACT real w = times * sums.all / (n * weighed) * entry_weight(PASS entry);
+    EXACT real w = times * sums.all / (n * weighed_at(PASS entry)) * entry_weight(PASS entry);
     r.light = entry_light(PASS entry);
     r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);
     r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), entry);
-    r.w = sel(times > K(0.0f), w, K(0.0f));
-    r.p = p;
+    r.p = target(PASS s, light_load(PASS r.light), r.u, r.v);
+    r.w = sel(and_(times > K(0.0f), r.p > K(0.0f)), w, K(0.0f));
     return r;
 }
 

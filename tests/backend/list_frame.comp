@@ -192,8 +192,26 @@ list_prior prior_load(uint i) {
     list_entry e = entry_load(i);
     return list_prior_of(e.weight, wf(wu(HEAD_VISIBILITY) + e.light));
 }
-float prior_share(uint i) { return prior_load(i).share; }
 uint entry_light(uint i) { return entry_load(i).light; }
+uint entry_lights(uint first, int l, uint count) { return entry_light(minu1(first + uint(l), count - 1u)); }
+uint sketch_word(uint i, int field) { return scratch(uint(SCRATCH_SKETCHES + field * LIST_ROOM) + i); }
+void sketch_store(uint first, int l, list_sketch k) {
+    uint i = first + uint(l);
+    for (int c = 0; c < 3; c++) {
+        put(sketch_word(i, c), k.middle[c]);
+        put(sketch_word(i, 4 + c), k.normal[c]);
+        put(sketch_word(i, 8 + c), k.shine[c]);
+    }
+    put(sketch_word(i, 3), k.radius);
+    put(sketch_word(i, 7), k.shape);
+}
+uint sketch_shape(uint i) { return wu(sketch_word(i, 7)); }
+list_sketch sketch_load(uint i) {
+    float f[SKETCH_WORDS];
+    for (int c = 0; c < SKETCH_WORDS; c++)
+        f[c] = wf(sketch_word(i, c));
+    return list_sketch(vec3(f[0], f[1], f[2]), f[3], vec3(f[4], f[5], f[6]), sketch_shape(i), vec3(f[8], f[9], f[10]));
+}
 float entry_weight(uint i) { return entry_load(i).weight; }
 void weighed_store(uint i, float weighed) { weighed_[i] = weighed; }
 float weighed_load(uint i) { return weighed_[i]; }
@@ -234,7 +252,7 @@ void share_pixel(uint count, uint x, uint y) {
     vec3 colour = vec3(0.0);
     put(pixel_answer(uint(PIXEL_SHOWN)), list_shown(rays, n, rng(key, DIM_LIST_SHOWN)));
     for (uint k = 0u; k < rays; k++) {
-        list_ray r = list_ask(sums, n, key, wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k));
+        list_ray r = list_ask(s, sums, n, key, wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k));
         bool seen = frame_sees(pixel, k);
         r.w = seen ? r.w : 0.0;
         put(ray_answer(k, uint(RAY_LIGHT)), r.light);
@@ -257,6 +275,7 @@ void build_tile() {
     float start = tail_start(wu(HEAD_SEED), tile_, wu(HEAD_FRAME));
     list_size size = list_build(16u, wv(uint(HEAD_EYE)), wu(HEAD_LIST), wu(HEAD_TAIL), start);
     size = list_fill(size, wu(HEAD_LIST) + wu(HEAD_TAIL), wu(HEAD_RAYS), wu(HEAD_DRAWS));
+    list_sketches(size.count);
     if (first()) {
         put(answer(uint(ANSWER_COUNT)), size.count);
         put(answer(uint(ANSWER_COPIES)), size.copies);

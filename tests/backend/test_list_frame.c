@@ -133,7 +133,7 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
     k->list_show(ctx, x, y, asked, shown);
     for (int i = 0; i < asked->most; i++) {
         uint32_t seen = 0;
-        k->list_ray(ctx, x, y, b, asked, i, &draws[i].r);
+        k->list_ray(ctx, g, x, y, asked, i, &draws[i].r);
         for (int l = 0; l < BLOCK; l++) {
             uint32_t pixel = (uint32_t)((y + (l >> 2)) * W + x + (l & 3));
             seen |= (uint32_t)(asked->times[i][l] > 0 && frame_sees(pixel, (u32)i)) << l;

@@ -12,7 +12,8 @@
 #define FAKE_CHOSEN (FAKE_PATCHES + 16u * 6u)
 #define FAKE_ENTRIES (FAKE_CHOSEN + 128u)
 #define FAKE_ROOM 64u
-#define FAKE_END (FAKE_ENTRIES + 2u * FAKE_ROOM) /* at most TILE_WORDS */
+#define FAKE_SKETCHES (FAKE_ENTRIES + 2u * FAKE_ROOM)
+#define FAKE_END (FAKE_SKETCHES + 32u * U32(SKETCH_WORDS)) /* at most TILE_WORDS */
 
 #define PIXEL_ENTRIES 20u /* of the list that pixels share their rays out over */
 #define PIXEL_RAYS 12
@@ -77,8 +78,9 @@ FN void word3_store(CTX u1 at, f3 a) {
     word_store(PASS at + 1u, bits_of_f1(a.y));
     word_store(PASS at + 2u, bits_of_f1(a.z));
 }
-FN f3 word3_load(CTX u1 at) {
-    return F3(f1_of_bits(word_load(PASS at)), f1_of_bits(word_load(PASS at + 1u)), f1_of_bits(word_load(PASS at + 2u)));
+FN f3 word3_load(CTX u1 at, u1 stride) {
+    return F3(f1_of_bits(word_load(PASS at)), f1_of_bits(word_load(PASS at + stride)),
+              f1_of_bits(word_load(PASS at + 2u * stride)));
 }
 FN void patch_store(CTX u1 i, list_patch t) {
     u1 at = FAKE_PATCHES + 16u * i;
@@ -95,13 +97,13 @@ FN void patch_store(CTX u1 i, list_patch t) {
 FN list_patch patch_load(CTX u1 i) {
     u1 at = FAKE_PATCHES + 16u * i;
     list_patch t;
-    t.c = word3_load(PASS at);
+    t.c = word3_load(PASS at, 1u);
     t.radius = f1_of_bits(word_load(PASS at + 3u));
-    t.axis = word3_load(PASS at + 4u);
+    t.axis = word3_load(PASS at + 4u, 1u);
     t.spread = f1_of_bits(word_load(PASS at + 7u));
     t.share = f1_of_bits(word_load(PASS at + 8u));
     t.reflectance = f1_of_bits(word_load(PASS at + 9u));
-    t.wo = word3_load(PASS at + 10u);
+    t.wo = word3_load(PASS at + 10u, 1u);
     t.gloss = f1_of_bits(word_load(PASS at + 13u));
     t.alpha2 = f1_of_bits(word_load(PASS at + 14u));
     return t;
@@ -230,8 +232,33 @@ FN light light_splat(CTX u1 i) { return any_light(hash_u32(KU(i) + KU(77u))); }
 FN list_prior prior_load(CTX u1 i) {
     return list_prior_of(entry_load(PASS i).weight, learned_visibility(F32(i & 7u), F32(i & 3u), 0.375f));
 }
-FN real prior_share(CTX u32 i) { return K(0.25f) + rng(i, KU(1u)); }
-FN u32 entry_light(CTX u32 i) { return i * KU(37u); }
+FN u32 entry_light(CTX u32 i) { return i * KU(37u) + KU(ITEM_COUNT & 15u); }
+FN u32 entry_lights(CTX u1 first, int l, u1 count) { return entry_light(PASS lane_places(first + U32(l))); }
+FN u1 sketch_word(CTX u1 i, u1 field) { return FAKE_SKETCHES + 32u * field + i; }
+FN void sketch_store(CTX u1 first, int l, list_sketch k) {
+    u1 i = first + U32(l);
+    words_store(PASS sketch_word(PASS i, 0u), bits_of_real(k.middle.x));
+    words_store(PASS sketch_word(PASS i, 1u), bits_of_real(k.middle.y));
+    words_store(PASS sketch_word(PASS i, 2u), bits_of_real(k.middle.z));
+    words_store(PASS sketch_word(PASS i, 3u), bits_of_real(k.radius));
+    words_store(PASS sketch_word(PASS i, 4u), bits_of_real(k.normal.x));
+    words_store(PASS sketch_word(PASS i, 5u), bits_of_real(k.normal.y));
+    words_store(PASS sketch_word(PASS i, 6u), bits_of_real(k.normal.z));
+    words_store(PASS sketch_word(PASS i, 7u), k.shape);
+    words_store(PASS sketch_word(PASS i, 8u), bits_of_real(k.shine.x));
+    words_store(PASS sketch_word(PASS i, 9u), bits_of_real(k.shine.y));
+    words_store(PASS sketch_word(PASS i, 10u), bits_of_real(k.shine.z));
+}
+FN u1 sketch_shape(CTX u1 i) { return word_load(PASS sketch_word(PASS i, 7u)); }
+FN list_sketch sketch_load(CTX u1 i) {
+    list_sketch k;
+    k.middle = spread3(word3_load(PASS sketch_word(PASS i, 0u), 32u));
+    k.radius = K(f1_of_bits(word_load(PASS sketch_word(PASS i, 3u))));
+    k.normal = spread3(word3_load(PASS sketch_word(PASS i, 4u), 32u));
+    k.shape = KU(sketch_shape(PASS i));
+    k.shine = spread3(word3_load(PASS sketch_word(PASS i, 8u), 32u));
+    return k;
+}
 FN real entry_weight(CTX u32 i) { return K(1.0f) + rng(i, KU(2u)); }
 FN void weighed_store(CTX u1 i, real weighed) { dialect_weighed[i] = weighed; }
 FN real weighed_load(CTX u1 i) { return dialect_weighed[i]; }
@@ -268,8 +295,8 @@ FN u32 draw_rays(CTX u32 item, int slot, list_sums sums, real n, real start) {
     return all;
 }
 
-/* Slots 0 to 24. The lights' numbers must not be known when a shader is compiled: it would fold their values into
- * what is computed of them, and round otherwise. */
+/* Slots 0 to 24, and 78 to 92. The lights' numbers must not be known when a shader is compiled: it would fold their
+ * values into what is computed of them, and round otherwise. */
 FN void list_pixels(CTX u32 item, u32 key, surf s) {
     for (u1 i = 0u; i < PIXEL_ENTRIES; i++) {
         list_entry e;
@@ -281,6 +308,7 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, LISTS_FIRST, list_u(bits, shr(bits, 24)));
     put_real(PASS item, LISTS_FIRST + 1, list_v(bits, shr(bits, 24)));
     put_resv(PASS item, LISTS_FIRST + 2, ris_list(PASS s, key, PIXEL_ENTRIES));
+    list_sketches(PASS PIXEL_ENTRIES);
     list_sums sums = list_weigh(PASS s, rng(key, KU(5001u)) < K(0.9f), key, PIXEL_ENTRIES);
     real n = list_draws(sums, 4.0f, 0.75f, rng(key, KU(5002u)));
     put_real(PASS item, LISTS_FIRST + 8, sums.all);
@@ -293,10 +321,10 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, LISTS_FIRST + 14, draw_rays(PASS item, LISTS_FIRST + 13, sums, n, rng(key, KU(5004u))));
     for (int k = 0; k < PIXEL_RAYS; k++) {
         mask blocked = rng(key, KU(5010u + U32(k))) < K(0.4f);
-        dialect_found[k] = list_ask(PASS sums, n, key, dialect_drawn[k], dialect_times[k]);
+        dialect_found[k] = list_ask(PASS s, sums, n, key, dialect_drawn[k], dialect_times[k]);
         dialect_found[k].w = sel(blocked, K(0.0f), dialect_found[k].w);
     }
-    list_ray one = list_ask(PASS sums, n, key, dialect_drawn[1], dialect_times[1]);
+    list_ray one = list_ask(PASS s, sums, n, key, dialect_drawn[1], dialect_times[1]);
     put_u32(PASS item, LISTS_FIRST + 15, one.light);
     put_real(PASS item, LISTS_FIRST + 16, one.u);
     put_real(PASS item, LISTS_FIRST + 17, one.v);
@@ -307,6 +335,18 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, LISTS_FIRST + 21, kept.ray);
     put_real(PASS item, LISTS_FIRST + 22, kept.w);
     put_real(PASS item, LISTS_FIRST + 23, list_reused(to_real(shr(bits, 22)), 32.0f));
+    sketch_surf q = sketch_surf_of(s);
+    list_sketch brief = sketch_of(light_load(PASS bits));
+    real d2 = sketch_distance2(brief, s.p);
+    put_real(PASS item, LISTS_FIRST + 78, q.reach);
+    put_real(PASS item, LISTS_FIRST + 79, brief.radius);
+    put_v3(PASS item, LISTS_FIRST + 80, brief.middle);
+    put_v3(PASS item, LISTS_FIRST + 83, brief.normal);
+    put_v3(PASS item, LISTS_FIRST + 86, brief.shine);
+    put_u32(PASS item, LISTS_FIRST + 89, brief.shape);
+    put_real(PASS item, LISTS_FIRST + 90, sketch_target(s, q, brief, SKETCH_ROUND + (ITEM_COUNT & 1u), d2));
+    put_real(PASS item, LISTS_FIRST + 91, sketch_gloss(s, q, s.n, rng(key, KU(5009u)), rng(key, KU(5030u))));
+    put_real(PASS item, LISTS_FIRST + 92, quick_inverse_root(d2));
     EXACT real squares = rng(key, KU(5007u)) * K(1e-6f);
     put_real(PASS item, LISTS_FIRST + 24, root_of_squares(squares, rng(key, KU(5008u))));
 }

@@ -11,37 +11,16 @@ struct core_context {
     double *times;
 };
 
-#include "core/list_rays.h"
-
-/* Of how lists are made nothing is asked here. */
-FN real score_load(CTX u1 group, int l) { return 0; }
-FN void score_store(CTX u1 group, int l, real score) {}
-FN f1 score_at(CTX u1 group, u1 place) { return 0; }
-FN void score_clear(CTX u1 group, u1 place) {}
-FN void chosen_store(CTX u1 i, u1 place) {}
-FN u1 chosen_load(CTX u1 i) { return 0; }
-FN const float *score_row(CTX u1 group) { return ctx->weighed; }
-FN u1 tile_pixels(CTX u1 block) { return 0; }
-FN list_point tile_point(CTX u1 block, u1 place) { return (list_point){ 0 }; }
-FN list_material list_material_load(CTX u1 material) { return (list_material){ 0 }; }
-FN void patch_store(CTX u1 i, list_patch t) {}
-FN list_patch patch_load(CTX u1 i) { return (list_patch){ 0 }; }
-FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) { return (list_node){ 0 }; }
-FN list_brief brief_load(CTX u1 part, u1 cluster, int l) { return (list_brief){ 0 }; }
-FN list_cluster cluster_load(CTX u1 part, u1 cluster) { return (list_cluster){ 0 }; }
-FN list_top top_load(CTX u1 part) { return (list_top){ 0 }; }
-FN u1 cluster_light(CTX u1 part, u1 cluster, u1 place) { return 0; }
-FN void list_group_store(CTX u1 group, list_group g) {}
-FN list_group list_group_load(CTX u1 group) { return (list_group){ 0 }; }
-FN void group_sum_store(CTX u1 group, f1 sum) {}
-FN f1 group_sum(CTX u1 group) { return 0; }
-FN void entry_store(CTX u1 i, list_entry e) {}
+#include "no_lists.h"
 
 FN light light_load(CTX u32 i) { return (light){ .kind = LIGHT_POINT }; }
 FN light light_splat(CTX u1 i) { return light_load(PASS i); }
 FN list_entry entry_load(CTX u1 i) { return (list_entry){ i, 1 }; }
 FN list_prior prior_load(CTX u1 i) { return (list_prior){ 0 }; }
-FN real prior_share(CTX u32 i) { return 1; }
+FN u32 entry_lights(CTX u1 first, int l, u1 count) { return first; }
+FN void sketch_store(CTX u1 first, int l, list_sketch k) {}
+FN list_sketch sketch_load(CTX u1 i) { return (list_sketch){ .radius = 0 }; }
+FN u1 sketch_shape(CTX u1 i) { return SKETCH_NONE; }
 FN u32 entry_light(CTX u32 i) { return i; }
 FN real entry_weight(CTX u32 i) { return 1; }
 FN void weighed_store(CTX u1 i, real weighed) { ctx->weighed[i] = weighed; }

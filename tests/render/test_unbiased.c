@@ -126,6 +126,41 @@ static noc_scene *swarm(void) {
     return finish(s);
 }
 
+/* Lights that are near on one side of a tile and far on the other (core/list_sketch.h): large windows and discs whose
+ * distance of five radii ends on the floor and on a wall, beside small lights that are far everywhere, points, spots
+ * and profiles. The floor is glossy, so that for it near goes further; the wall is matte. Boards stand in the light. */
+static noc_scene *border(void) {
+    noc_scene *s = noc_scene_create(NULL);
+    int wall = matte(s, 0.5f), profiles = add_test_profiles(s);
+    int damp =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.2f, 0.25f }, .f0 = 0.06f, .roughness = 0.5f });
+    add_floor(s, damp, 0, 0, 0, 15);
+    QUAD(s, wall, -10, 10, 0, 20, 0, 0, 0, 0, 12);
+    for (int i = 0; i < 8; i++)
+        QUAD(s, wall, -7 + 2.1 * i, -2 + 1.3 * (i % 4), 0, 0.9, 0.3, 0, 0, 0, 1.8);
+    for (int i = 0; i < 40; i++) {
+        double x = -9 + 18 * (i * 0.7548776662467 - floor(i * 0.7548776662467));
+        double y = -7 + 15 * (i * 0.5698402909980 - floor(i * 0.5698402909980)), z = 2.5 + i % 5;
+        double size = i % 4 ? 0.06 : 0.9 + 0.1 * (i % 3), bright = (i % 4 ? 60 : 1) * (2 + i * 7 % 11);
+        noc_light l = { .kind = (noc_light_kind)(i / 2 % NOC_LIGHT_KIND_COUNT),
+                        .position = { x, y, z },
+                        .edge_u = { size, 0, 0.2 * size },
+                        .edge_v = { 0, i % 3 ? -size : size, 0 },
+                        .direction = { 0.3, i % 5 * 0.2 - 0.4, -1 },
+                        .radius = size / 2,
+                        .inner_deg = 20,
+                        .outer_deg = 60,
+                        .emission = { (float)bright, (float)(0.8 * bright), (float)(0.4 * bright) } };
+        if (i % 9 == 2 && (l.kind == NOC_LIGHT_SPHERE || l.kind == NOC_LIGHT_DISC)) {
+            l.profile = profiles + i % 4;
+            l.c0[0] = 1;
+            l.c0[2] = 0.3;
+        }
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    return finish(s);
+}
+
 /* A hall full of lights, seen from outside, with a low gap below its wall: visibility-aware boxes end at the wall,
  * light does not. */
 static noc_scene *gap(void) {
@@ -281,12 +316,22 @@ static void thousands_of_lights(void **state) {
     check_scene(swarm(), (plan){ 300, 150, .lists = true });
 }
 
+static void near_and_far_resting(void **state) {
+    (void)state;
+    check_scene(border(), (plan){ 500, 600, .lists = true });
+}
+static void near_and_far_moving(void **state) {
+    (void)state;
+    check_scene(border(), (plan){ 500, 600, .moving = true, .lists = true });
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_picker_is_tried), cmocka_unit_test(boxes_with_a_gap),
         cmocka_unit_test(many_lights_resting),   cmocka_unit_test(many_lights_moving),
         cmocka_unit_test(one_light_resting),     cmocka_unit_test(one_light_moving),
-        cmocka_unit_test(thousands_of_lights),
+        cmocka_unit_test(thousands_of_lights),   cmocka_unit_test(near_and_far_resting),
+        cmocka_unit_test(near_and_far_moving),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,6 +125,8 @@ typedef struct group_record {
 typedef struct list_scratch {
     light_list list;
     ALIGNED float scores[LIST_GROUPS + 1][16];
+    ALIGNED float sketches[SKETCH_WORDS - 1][LIST_ROOM]; /* fields of list_sketch, and its shape */
+    uint32_t shapes[LIST_ROOM];
     float sums[LIST_GROUPS];
     group_record groups[LIST_GROUPS];
     patch_record patches[LIST_PATCHES];
@@ -139,7 +141,7 @@ typedef struct priors {
 
 /* What the pixels of a block ask for over their tile's list: core/list_rays.h. */
 typedef struct list_asked {
-    ALIGNED float weighed[LIST_ROOM][BLOCK]; /* target * share of each entry */
+    ALIGNED float weighed[LIST_ROOM][BLOCK]; /* what chooses each entry */
     float all[BLOCK], bright[BLOCK];         /* list_sums */
     float n[BLOCK];                          /* draws */
     int most;                                /* rays of a lane at most */
@@ -190,7 +192,7 @@ typedef struct kernels {
     void (*list_fill)(const struct core_context *ctx);
     void (*list_share)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, float brightness,
                        const priors *priors, list_asked *out);
-    void (*list_ray)(const struct core_context *ctx, int x, int y, const priors *priors, list_asked *asked, int k,
+    void (*list_ray)(const struct core_context *ctx, const gblock *g, int x, int y, list_asked *asked, int k,
                      rblock *out);
     void (*list_show)(const struct core_context *ctx, int x, int y, list_asked *asked, uint32_t ray[BLOCK]);
     void (*list_keep)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,

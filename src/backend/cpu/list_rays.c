@@ -53,9 +53,9 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     d->rays = t->asked.most;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
-    run->k->list_ray(ctx, x, y, &t->cell[t->cell_of[block]].priors, &t->asked, k, &d->r);
+    run->k->list_ray(ctx, g, x, y, &t->asked, k, &d->r);
     for (int l = 0; l < BLOCK; l++) {
-        s->valid |= (uint32_t)(t->asked.times[k][l] > 0) << l;
+        s->valid |= (uint32_t)(d->r.w[l] > 0) << l;
         s->light[l] = d->r.light[l];
         d->entry[l] = (uint8_t)t->asked.entry[k][l];
     }

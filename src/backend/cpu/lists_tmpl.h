@@ -34,8 +34,26 @@ FN real lane_reals(const float *from, u32 i) {
         x[l] = from[at[l]];
     return rload(x);
 }
-FN real prior_share(CTX u32 i) { return lane_reals(ctx->at.priors->share, i); }
 FN real entry_weight(CTX u32 i) { return lane_reals(ctx->at.lists->list.weight, i); }
+FN u32 entry_lights(CTX u1 first, int l, u1 count) {
+    uint32_t at[LANES];
+    for (uint32_t i = 0; i < LANES; i++)
+        at[i] = ctx->at.lists->list.light[NOC_MIN(first + (uint32_t)l + i, count - 1)];
+    return uload(at);
+}
+FN void sketch_store(CTX u1 first, int l, list_sketch k) {
+    const real field[SKETCH_WORDS - 1] = { k.middle.x, k.middle.y, k.middle.z, k.radius,  k.normal.x,
+                                           k.normal.y, k.normal.z, k.shine.x,  k.shine.y, k.shine.z };
+    for (int i = 0; i < SKETCH_WORDS - 1; i++)
+        rstore(ctx->at.lists->sketches[i] + first + l, field[i]);
+    ustore(ctx->at.lists->shapes + first + l, k.shape);
+}
+FN u1 sketch_shape(CTX u1 i) { return ctx->at.lists->shapes[i]; }
+FN list_sketch sketch_load(CTX u1 i) {
+    const float(*k)[LIST_ROOM] = ctx->at.lists->sketches;
+    return (list_sketch){ V3(K(k[0][i]), K(k[1][i]), K(k[2][i])), K(k[3][i]), V3(K(k[4][i]), K(k[5][i]), K(k[6][i])),
+                          KU(sketch_shape(ctx, i)), V3(K(k[7][i]), K(k[8][i]), K(k[9][i])) };
+}
 FN u32 entry_light(CTX u32 i) {
     uint32_t at[LANES];
     ustore(at, i);
@@ -71,6 +89,7 @@ static void fill_list(const struct core_context *ctx) {
         list_fill(ctx, (list_size){ list->count, list->copies }, f->list + f->tail, f->shadow_rays, f->draws);
     list->count = size.count;
     list->copies = size.copies;
+    list_sketches(ctx, size.count);
 }
 
 static list_sums sums_load(const list_asked *a, int l) {
@@ -107,15 +126,15 @@ static void list_share(const struct core_context *tile, const gblock *g, uint32_
     }
 }
 
-static void list_ray_of(const struct core_context *tile, int x, int y, const priors *of, list_asked *asked, int k,
+static void list_ray_of(const struct core_context *tile, const gblock *g, int x, int y, list_asked *asked, int k,
                         rblock *out) {
     struct core_context block = *tile, *ctx = &block;
-    ctx->at.priors = of;
     ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
         ctx->at.lane = l;
-        list_ray r = list_ask(ctx, sums_load(asked, l), rload(asked->n + l), key_of(ctx, x, y, l),
-                              uload(asked->entry[k] + l), rload(asked->times[k] + l));
+        list_ray r =
+            list_ask(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), sums_load(asked, l), rload(asked->n + l),
+                     key_of(ctx, x, y, l), uload(asked->entry[k] + l), rload(asked->times[k] + l));
         ustore(out->light + l, r.light);
         rstore(out->u + l, r.u);
         rstore(out->v + l, r.v);

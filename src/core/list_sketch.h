@@ -1,0 +1,182 @@
+/* core/list_sketch.h: a light of a tile's list in brief, made once a tile, and what a surface gets of it from afar,
+ * about. That steers only: a pixel weighs the entries of its list by it, and what it then chooses is evaluated in full
+ * (core/light.h) and divided by the very weight that chose it (core/list_rays.h).
+ *
+ * From afar is beyond SKETCH_FAR radii of what the light lies in, and where the surface is glossy so far that the light
+ * is narrower than the lobe. Spots and lights with a profile have no sketch. What the sketch gives is 0 only where no
+ * place of the light reaches the surface, and no place of a flat light brings much more than twice of it: a surface
+ * that sees the light edge on takes the mean of the cosine at its middle and at the farthest it may reach. */
+#ifndef CORE_LIST_SKETCH_H
+#define CORE_LIST_SKETCH_H
+
+#include "core/list_limits.h"
+#include "core/reservoir.h"
+
+#define SKETCH_FAR 5.0f
+#define SKETCH_FAR_GLOSSY 2.0f /* radii, over alpha */
+
+struct list_sketch {
+    v3 middle;
+    real radius; /* m around the middle */
+    v3 normal;   /* of flat lights, the side that shines; as long as the area, m2 */
+    u32 shape;   /* SKETCH_NONE, ... */
+    v3 shine;    /* parts of luminance in cd/m2 (flat) or cd (round), by channel */
+};
+
+/* A surface as sketches are looked at from. */
+struct sketch_surf {
+    real reach; /* radii that are afar, squared */
+    v3 tint;    /* albedo over pi */
+    real nv;
+    mask shiny;
+    real matte; /* core/surface.h, under_gloss: what is left of diffuse light, and k */
+    real k;
+    real alpha2;
+    real gloss; /* alpha2 / (2 pi) */
+    real slope; /* Smith's visibility term is about 1 / 2 over slope * nl + level */
+    real level;
+};
+
+#ifndef CORE_GLSL
+typedef struct list_sketch list_sketch;
+typedef struct sketch_surf sketch_surf;
+#endif
+
+FN u32 entry_lights(CTX u1 first, int l, u1 count); /* of entries first + l to first + l + LANES - 1; of any that are
+                                                     * past the last one, some light */
+FN void sketch_store(CTX u1 first, int l, list_sketch k); /* of these entries */
+FN list_sketch sketch_load(CTX u1 i);                     /* of entry i, in every lane */
+FN u1 sketch_shape(CTX u1 i);
+
+/* ---- making them ---- */
+
+FN list_sketch sketch_of(light l) {
+    list_sketch k;
+    mask disc = l.kind == KU(LIGHT_DISC);
+    mask tri = l.kind == KU(LIGHT_TRIANGLE);
+    mask sphere = l.kind == KU(LIGHT_SPHERE);
+    mask round = or_(sphere, is_point(l));
+    mask cornered = or_(tri, l.kind == KU(LIGHT_PARALLELOGRAM));
+    real share = sel(cornered, sel(tri, K(1.0f / 3.0f), K(0.5f)), K(0.0f));
+    EXACT real fx = (l.a.x + l.b.x) * share;
+    EXACT real fy = (l.a.y + l.b.y) * share;
+    EXACT real fz = (l.a.z + l.b.z) * share;
+    EXACT real ax = l.a.x - fx;
+    EXACT real ay = l.a.y - fy;
+    EXACT real az = l.a.z - fz;
+    EXACT real bx = l.b.x - fx;
+    EXACT real by = l.b.y - fy;
+    EXACT real bz = l.b.z - fz;
+    v3 far = V3(fx, fy, fz);
+    v3 beside = V3(ax, ay, az);
+    v3 above = V3(bx, by, bz);
+    k.middle = add3(l.p, far);
+    real corner = sqrt_(max_(dot3(far, far), max_(dot3(beside, beside), dot3(above, above))));
+    k.radius = sel(cornered, corner, sel(is_point(l), K(0.0f), l.radius));
+    real size = sel(round, K(0.0f), sel(disc, K(CORE_PI), sel(tri, K(0.5f), K(1.0f))));
+    k.normal = mul3(cross3(l.a, l.b), size);
+    EXACT real face = K(CORE_PI) * l.radius * l.radius;
+    face = sel(sphere, face, K(1.0f));
+    EXACT real red = l.e.x * K(0.2126f) * face;
+    EXACT real green = l.e.y * K(0.7152f) * face;
+    EXACT real blue = l.e.z * K(0.0722f) * face;
+    k.shine = V3(red, green, blue);
+    u32 sided = selu((l.flags & KU(LIGHT_TWO_SIDED)) != KU(0u), KU(SKETCH_TWO_SIDED), KU(SKETCH_FLAT));
+    mask none = or_(l.kind == KU(LIGHT_SPOT), profile_of(l) != KU(0u));
+    k.shape = selu(none, KU(SKETCH_NONE), selu(round, KU(SKETCH_ROUND), sided));
+    return k;
+}
+
+/* Of all entries of the tile's list. */
+FN1 void list_sketches(CTX u1 count) {
+    for (u1 first = 0u; first < count; first = first + 16u)
+        EACH16(l)
+    sketch_store(PASS first, l, sketch_of(light_load(PASS entry_lights(PASS first, l, count))));
+}
+
+/* ---- looking at them ---- */
+
+/* 1 over the root of x, from 1e-37 to 1e37, to a five-hundredth: a guess by the exponent's half and one step of
+ * Newton's. No division and no root, and the same bits on every machine. */
+FN real quick_inverse_root(real x) {
+    real y = real_of_bits(KU(0x5f375a86u) - shr(bits_of_real(x), 1));
+    EXACT real z = y * (K(1.5f) - K(0.5f) * x * y * y);
+    return z;
+}
+
+FN sketch_surf sketch_surf_of(surf s) {
+    sketch_surf q;
+    q.shiny = s.f0 > K(0.0f);
+    q.tint = mul3(s.albedo, K(CORE_INV_PI));
+    q.nv = dot3(s.n, s.wo);
+    EXACT real narrow = K(SKETCH_FAR_GLOSSY) / max_(s.alpha, K(1e-3f));
+    real radii = sel(q.shiny, max_(narrow, K(SKETCH_FAR)), K(SKETCH_FAR));
+    q.reach = radii * radii;
+    real nv = max_(q.nv, K(1e-4f));
+    EXACT real k = K(1.0f) / (K(1.0f) + s.alpha * (K(13.0f) + K(9.0f) * s.alpha));
+    real co = K(1.0f) - max_(q.nv, K(0.0f));
+    EXACT real matte = (K(1.0f) - s.f0) / (K(1.0f) - k * K(0.1f)) * (K(1.0f) - k * (co * co * co));
+    q.matte = matte;
+    q.k = k;
+    q.alpha2 = s.alpha * s.alpha;
+    EXACT real gloss = q.alpha2 * K(0.5f * CORE_INV_PI);
+    q.gloss = gloss;
+    EXACT real slope = K(2.0f) * nv * (K(1.0f) - s.alpha) + s.alpha;
+    q.slope = slope;
+    EXACT real level = nv * s.alpha;
+    q.level = level;
+    return q;
+}
+
+/* The glossy lobe over cos(theta), about; wi: unit, about, at the cosine n_wi. The visibility term is the one
+ * that E. Hammon 2017 ("PBR Diffuse Lighting for GGX+Smith Microsurfaces") has for Smith's: no roots. */
+FN real sketch_gloss(surf s, sketch_surf q, v3 wi, real n_wi, real nl) {
+    v3 h = add3(wi, s.wo);
+    real h2 = max_(dot3(h, h), K(1e-6f));
+    EXACT real nh = n_wi + q.nv;
+    EXACT real wide = max_(h2 - nh * nh * (K(1.0f) - q.alpha2), q.alpha2 * h2);
+    EXACT real vh = K(0.5f) * h2 * quick_inverse_root(h2);
+    EXACT real fresnel = s.f0 + (K(1.0f) - s.f0) * schlick_weight(min_(vh, K(1.0f)));
+    real inv = quick_inverse_root(wide * wide * (q.slope * nl + q.level));
+    EXACT real f = q.gloss * (h2 * h2) * fresnel * (inv * inv);
+    return f;
+}
+
+/* How far the middle is, squared. */
+FN real sketch_distance2(list_sketch k, v3 y) {
+    v3 w = sub3(k.middle, y);
+    return max_(dot3(w, w), K(1e-12f));
+}
+
+/* Is it near? */
+FN mask sketch_near(list_sketch k, sketch_surf q, real d2) { return d2 < q.reach * (k.radius * k.radius); }
+
+/* About the target of any place on the light, which is not near. */
+FN real sketch_target(surf s, sketch_surf q, list_sketch k, u1 shape, real d2) {
+    v3 w = sub3(k.middle, s.p);
+    real inv = quick_inverse_root(d2);
+    EXACT real better = inv * (K(1.5f) - K(0.5f) * d2 * inv * inv); /* lobes are narrow */
+    inv = better;
+    v3 wi = mul3(w, inv);
+    real facing = K(1.0f);
+    if (shape != SKETCH_ROUND) {
+        facing = K(0.0f) - dot3(k.normal, wi);
+        if (shape == SKETCH_TWO_SIDED)
+            facing = abs_(facing);
+    }
+    real n_wi = dot3(s.n, wi);
+    EXACT real rim = K(0.5f) * (n_wi + k.radius * inv);
+    real nl = max_(max_(n_wi, rim), K(0.0f));
+    EXACT real got = max_(facing, K(0.0f)) * nl * (inv * inv);
+    EXACT real f = k.shine.x * q.tint.x + k.shine.y * q.tint.y + k.shine.z * q.tint.z;
+    if (ANY(q.shiny)) {
+        real ci = K(1.0f) - nl;
+        EXACT real diffuse = f * q.matte * (K(1.0f) - q.k * (ci * ci * ci));
+        EXACT real both = diffuse + (k.shine.x + k.shine.y + k.shine.z) * sketch_gloss(s, q, wi, n_wi, nl);
+        f = sel(q.shiny, both, f);
+    }
+    EXACT real p = got * f;
+    return sel(p > K(0.0f), min_(p, K(1e30f)), K(0.0f));
+}
+
+#endif

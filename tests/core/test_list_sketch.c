@@ -1,0 +1,272 @@
+/* core/list_sketch.h: what weighs a far light is near to what the light brings and 0 only where it brings nothing; and
+ * rays over a list are divided by the very weight that chose them, near and far lights mixed. */
+#include "no_lists.h"
+#include "core_test.h"
+
+#include "base/base.h"
+
+enum { ENTRIES = 24, RAYS = 32 };
+
+struct core_context {
+    light light[ENTRIES];
+    list_sketch sketch[ENTRIES];
+    float weighed[ENTRIES];
+    uint32_t entry[RAYS];
+    float times[RAYS];
+    uint32_t drawn;
+};
+
+#define MINE ((struct core_context *)(uintptr_t)ctx)
+FN light light_load(CTX u32 i) { return ctx->light[i]; }
+FN light light_splat(CTX u1 i) { return light_load(PASS i); }
+FN list_entry entry_load(CTX u1 i) { return (list_entry){ i, 1 + .5f * (float)(i % 3) }; }
+FN u32 entry_light(CTX u32 i) { return i; }
+FN u32 entry_lights(CTX u1 first, int l, u1 count) { return NOC_MIN(first + (u1)l, count - 1); }
+FN real entry_weight(CTX u32 i) { return entry_load(PASS i).weight; }
+FN void sketch_store(CTX u1 first, int l, list_sketch k) {
+    if (first + (u1)l < ENTRIES)
+        MINE->sketch[first + (u1)l] = k;
+}
+FN list_sketch sketch_load(CTX u1 i) { return ctx->sketch[i]; }
+FN u1 sketch_shape(CTX u1 i) { return ctx->sketch[i].shape; }
+FN list_prior prior_load(CTX u1 i) { return list_prior_of(entry_load(PASS i).weight, .25f * (float)(i % 5)); }
+FN void weighed_store(CTX u1 i, real weighed) { MINE->weighed[i] = weighed; }
+FN real weighed_load(CTX u1 i) { return ctx->weighed[i]; }
+FN real weighed_at(CTX u32 i) { return ctx->weighed[i]; }
+FN real drawn_times(CTX u1 ray) { return ctx->times[ray]; }
+FN real found_p(CTX u1 ray) { return 0; }
+FN real found_w(CTX u1 ray) { return 0; }
+FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
+    if (!on)
+        return;
+    assert_true(ray < RAYS);
+    MINE->entry[ray] = entry;
+    MINE->times[ray] = times;
+    MINE->drawn = ray + 1;
+}
+/* One profile: its head, and a table of one step, which sends more ahead than aside and nothing back. */
+FN profile_cell profile_load(CTX u32 place) {
+    if (place == 0)
+        return (profile_cell){ real_of_bits(1), real_of_bits(1u << 16 | 1), 4, .25f };
+    return (profile_cell){ .4f, .4f, .1f, .1f };
+}
+
+/* ---- lights and surfaces ---- */
+
+static light any_light(dice *d, u32 kind) {
+    light l = { .kind = kind, .e = V3((float)uniform(d, 1, 50), (float)uniform(d, 1, 50), (float)uniform(d, 1, 50)) };
+    l.a = random_in_box(d, 1);
+    l.b = random_in_box(d, 1);
+    if (kind == LIGHT_DISC) {
+        v3 a = random_direction(d), n = random_direction(d);
+        l.radius = (float)uniform(d, .1, 1);
+        l.a = mul3(normalised(cross3(a, n)), l.radius);
+        l.b = mul3(normalised(cross3(l.a, a)), l.radius);
+    } else if (kind == LIGHT_SPHERE) {
+        l.radius = (float)uniform(d, .05, 1);
+    } else if (kind == LIGHT_SPOT) {
+        l.a = mul3(random_direction(d), 2);
+        l.b = V3(-.5f, 0, 0);
+    } else if (kind != LIGHT_POINT) {
+        v3 c = add3(l.a, l.b), e = sub3(l.a, l.b);
+        float longest = max_(max_(dot3(l.a, l.a), dot3(l.b, l.b)), dot3(e, e));
+        l.radius = sqrtf(kind == LIGHT_TRIANGLE ? longest : max_(longest, dot3(c, c)));
+    }
+    l.flags = kind != LIGHT_SPHERE && uniform(d, 0, 1) < .3 ? LIGHT_TWO_SIDED : 0;
+    return l;
+}
+
+static surf any_surface(dice *d, bool glossy) {
+    surf s = { .n = random_direction(d), .wo = random_direction(d), .albedo = V3(.5f, .3f, .2f) };
+    double rough = uniform(d, .05, 1);
+    if (dot3(s.n, s.wo) < 0)
+        s.wo = mul3(s.wo, -1);
+    s.alpha = (float)(rough * rough);
+    s.f0 = glossy ? .05f : 0;
+    return s;
+}
+
+/* Puts the light's middle so many radii away from the surface (m for a point), now and then where it is seen edge on.
+ */
+static void place_light(dice *d, light *l, surf s, double radii) {
+    list_sketch k = sketch_of(*l);
+    float r = k.radius > 0 ? k.radius : 1, away = r * (float)radii;
+    v3 w = random_direction(d);
+    if (uniform(d, 0, 1) < .3) {
+        w = sub3(w, mul3(s.n, dot3(w, s.n) - (float)(uniform(d, -1.2, 2.5) / radii)));
+        w = normalised(w);
+    }
+    l->p = add3(l->p, sub3(add3(s.p, mul3(w, away)), k.middle));
+}
+
+/* ---- near to the target ---- */
+
+typedef struct ratios {
+    double most; /* of the target at any place over the sketch */
+    mean mean;   /* of the mean target over the sketch, of lights that are wholly before the surface */
+    int near, missed, far, beyond; /* beyond: four times the sketch somewhere */
+} ratios;
+
+static ratios look_at_lights(bool glossy, const u32 *kinds, int count) {
+    enum { TRIALS = 30000, STEPS = 6 };
+    const struct core_context none = { 0 }, *ctx = &none;
+    dice d = { 5 };
+    ratios r = { 0 };
+    for (int i = 0; i < TRIALS; i++) {
+        surf s = any_surface(&d, glossy);
+        sketch_surf q = sketch_surf_of(s);
+        light l = any_light(&d, kinds[i % count]);
+        place_light(&d, &l, s, (double)sqrtf(q.reach) * uniform(&d, .98, 1.1) * (i % 3 ? 1 : 8));
+        list_sketch k = sketch_of(l);
+        float d2 = sketch_distance2(k, s.p), most = 0;
+        double sum = 0;
+        if (sketch_near(k, q, d2)) {
+            r.near++;
+            continue;
+        }
+        for (int j = 0; j < STEPS * STEPS; j++) {
+            float p = target(PASS s, l, ((float)(j % STEPS) + .5f) / STEPS, ((float)(j / STEPS) + .5f) / STEPS);
+            most = max_(most, p);
+            sum += (double)p / (STEPS * STEPS);
+        }
+        float about = sketch_target(s, q, k, k.shape, d2);
+        r.missed += most > 0 && !(about > 0);
+        if (!(about > 0))
+            continue;
+        r.far++;
+        r.most = fmax(r.most, (double)(most / about));
+        r.beyond += most > 4 * about;
+        if (dot3(s.n, sub3(k.middle, s.p)) > k.radius)
+            mean_add(&r.mean, sum / (double)about);
+    }
+    print_message("# %d near, %d far, %d missed; target over sketch: %.3f +- %.3f, at most %.2f, beyond 4: %d\n",
+                  r.near, r.far, r.missed, mean_of(&r.mean), mean_error(&r.mean) * sqrt(r.mean.n), r.most, r.beyond);
+    return r;
+}
+
+static const u32 extended[] = { LIGHT_DISC, LIGHT_TRIANGLE, LIGHT_PARALLELOGRAM, LIGHT_SPHERE };
+
+static void matte_surfaces(void **state) {
+    (void)state;
+    ratios r = look_at_lights(false, extended, 4);
+    assert_true(r.near > 1000 && r.far > 5000);
+    assert_int_equal(r.missed, 0);
+    assert_true(fabs(mean_of(&r.mean) - 1) < .03 && r.most < 3);
+}
+
+/* A narrow lobe at a grazing angle is narrower still beside its plane. */
+static void glossy_surfaces(void **state) {
+    (void)state;
+    ratios r = look_at_lights(true, extended, 4);
+    assert_true(r.near > 1000 && r.far > 5000);
+    assert_int_equal(r.missed, 0);
+    assert_true(fabs(mean_of(&r.mean) - 1) < .1 && r.beyond < r.far / 300);
+}
+
+/* Points are never near, and have no size that their places could differ by. */
+static void points(void **state) {
+    const u32 point = LIGHT_POINT;
+    (void)state;
+    ratios r = look_at_lights(false, &point, 1);
+    assert_true(r.near == 0 && r.missed == 0 && r.most < 1.02 && fabs(mean_of(&r.mean) - 1) < .01);
+    r = look_at_lights(true, &point, 1);
+    assert_true(r.near == 0 && r.missed == 0 && r.most < 2);
+}
+
+/* Whatever a spot or a profile sends aside, there is no sketch of it. */
+static void none_of_beams(void **state) {
+    (void)state;
+    dice d = { 9 };
+    light l = any_light(&d, LIGHT_SPOT);
+    assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
+    l = any_light(&d, LIGHT_DISC);
+    assert_int_equal(sketch_of(l).shape, l.flags ? SKETCH_TWO_SIDED : SKETCH_FLAT);
+    l.flags |= 1 << LIGHT_PROFILE;
+    assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
+    assert_int_equal(sketch_of(any_light(&d, LIGHT_SPHERE)).shape, SKETCH_ROUND);
+}
+
+static void inverse_roots(void **state) {
+    double most = 0;
+    (void)state;
+    for (double x = 1e-37; x < 1e37; x *= 1.01)
+        most = fmax(most, fabs((double)quick_inverse_root((float)x) * sqrt((double)(float)x) - 1));
+    print_message("# off by %.5f at most\n", most);
+    assert_true(most < .002);
+}
+
+/* ---- what chose it divides it ---- */
+
+/* Near lights, far ones, some at the border of both, spots and profiles; a third of them are hidden. */
+static void make_list(struct core_context *ctx, dice *d, surf s) {
+    sketch_surf q = sketch_surf_of(s);
+    for (u32 i = 0; i < ENTRIES; i++) {
+        light *l = &ctx->light[i];
+        double radii = i % 4 == 0 ? uniform(d, 1.5, 4.5) : i % 4 == 1 ? 5 : i % 4 == 2 ? (double)sqrtf(q.reach) : 60;
+        *l = any_light(d, i % 6);
+        if (i % 7 == 3 && (l->kind == LIGHT_POINT || l->kind == LIGHT_SPHERE || l->kind == LIGHT_DISC)) {
+            l->a = l->kind == LIGHT_DISC ? l->a : V3(1, 0, 0);
+            l->b = l->kind == LIGHT_DISC ? l->b : V3(0, 1, 0);
+            l->flags |= 1 << LIGHT_PROFILE;
+        }
+        place_light(d, l, s, radii);
+        if (dot3(s.n, sub3(sketch_of(*l).middle, s.p)) < 0)
+            l->p = add3(l->p, mul3(s.n, -2 * dot3(s.n, sub3(sketch_of(*l).middle, s.p))));
+        l->e = mul3(l->e, (float)(radii * radii)); /* so that each matters */
+    }
+    list_sketches(PASS ENTRIES);
+}
+
+/* Deviations of the mean over all starts of the draws from the sum over the entries, as shares of it: with the weights
+ * of list_ask, and with what they would be if the target were what divides. */
+static void mean_over_starts(bool glossy, double *off, double *off_by_targets) {
+    enum { STARTS = 4000 };
+    static struct core_context context;
+    struct core_context *ctx = &context;
+    dice d = { 31 };
+    *off = *off_by_targets = 0;
+    for (int trial = 0; trial < 30; trial++) {
+        surf s = any_surface(&d, glossy);
+        u32 key = (u32)roll(&d);
+        double want = 0, have = 0, other = 0;
+        make_list(ctx, &d, s);
+        list_sums sums = list_weigh(PASS s, true, key, ENTRIES);
+        u32 u = rng_bits(key, DIM_LIST_PLACE), v = rng_bits(key, DIM_LIST_PLACE + 1);
+        for (u32 i = 0; i < ENTRIES; i++)
+            want +=
+                i % 3 ? (double)(target(PASS s, ctx->light[i], list_u(u, i), list_v(v, i)) * entry_weight(PASS i)) : 0;
+        for (int k = 0; k < STARTS; k++) {
+            ctx->drawn = 0;
+            list_share_out(PASS sums, ENTRIES, 5, ((float)k + .5f) / STARTS);
+            for (u32 i = 0; i < ctx->drawn; i++) {
+                u32 entry = ctx->entry[i];
+                list_ray r = list_ask(PASS s, sums, 5, key, entry, ctx->times[i]);
+                double brings = entry % 3 ? (double)(r.p * r.w) / STARTS : 0;
+                have += brings;
+                if (r.p > 0)
+                    other += brings * (double)(ctx->weighed[entry] / (r.p * prior_load(PASS entry).share));
+            }
+        }
+        *off = fmax(*off, fabs(have / want - 1));
+        *off_by_targets = fmax(*off_by_targets, fabs(other / want - 1));
+    }
+    print_message("# off by %.5f at most; if targets divided, by %.3f\n", *off, *off_by_targets);
+}
+
+static void chosen_by_what_divides(void **state) {
+    (void)state;
+    for (int glossy = 0; glossy < 2; glossy++) {
+        double off, off_by_targets;
+        mean_over_starts(glossy, &off, &off_by_targets);
+        assert_true(off < .004);
+        assert_true(off_by_targets > .02);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matte_surfaces), cmocka_unit_test(glossy_surfaces), cmocka_unit_test(points),
+        cmocka_unit_test(none_of_beams),  cmocka_unit_test(inverse_roots),   cmocka_unit_test(chosen_by_what_divides),
+    };
+    return cmocka_run_group_tests_name("core/list_sketch", tests, NULL, NULL);
+}
