@@ -37,7 +37,7 @@ NOC_DEFAULT_PARAMS(noc_smooth_params, noc_smooth_default_params, NOC_SMOOTH_DEFA
  * run during a step. The device's threads do the work. The picture of a step is the smoother's. */
 typedef struct noc_smoother noc_smoother;
 
-/* The device must outlive it. About 330 bytes a pixel, made with the first step. NULL after reporting an error. */
+/* The device must outlive it. About 265 bytes a pixel, made with the first step. NULL after reporting an error. */
 NOC_API noc_smoother *noc_smoother_create(noc_device *device);
 NOC_API void noc_smoother_destroy(noc_smoother *smoother);
 

@@ -16,8 +16,8 @@ struct noc_smoother {
     noc_image *image;
 };
 
-/* Planes of floats, HELD numbers a pixel counted as so many. */
-enum { FRAME_PLANES = 8 + 2 * HELD, SCRATCH_PLANES = 10 + 2 * 4 + HELD };
+/* Planes of floats, several numbers a pixel counted as so many. */
+enum { FRAME_PLANES = 7 + LIGHT_HELD + SHOWN_HELD, SCRATCH_PLANES = 9 + 2 * 4 };
 
 noc_smoother *noc_smoother_create(noc_device *device) {
     noc_smoother *s = device ? noc_calloc(1, sizeof(*s)) : NULL;
@@ -65,9 +65,8 @@ static bool make_frame(smooth_frame *f, int width, int height) {
                          .slope_y = at + 2 * n,
                          .normal = { at + 3 * n, at + 4 * n, at + 5 * n },
                          .what = (uint32_t *)(at + 6 * n),
-                         .nearest = at + 7 * n,
-                         .light = (float(*)[HELD])(at + 8 * n),
-                         .shown = (float(*)[HELD])(at + (8 + HELD) * n) };
+                         .light = (float(*)[LIGHT_HELD])(at + 7 * n),
+                         .shown = (float(*)[SHOWN_HELD])(at + (7 + LIGHT_HELD) * n) };
     return true;
 }
 
@@ -108,17 +107,16 @@ static smooth_step make_step(noc_smoother *s, const noc_view *view, const noc_sm
                          .rows = { .rgb = { at, at + n, at + 2 * n },
                                    .reflects = { at + 3 * n, at + 4 * n, at + 5 * n },
                                    .normal = { now->normal[0], now->normal[1], now->normal[2] },
-                                   .depth = at + 6 * n,
-                                   .motion = { at + 7 * n, at + 8 * n, at + 9 * n },
+                                   .depth = now->inverse,
+                                   .motion = { at + 6 * n, at + 7 * n, at + 8 * n },
                                    .what = now->what },
-                         .planes = { planes_at(at + 10 * n, n), planes_at(at + 14 * n, n) },
-                         .made = (float(*)[HELD])(at + 18 * n),
+                         .planes = { planes_at(at + 9 * n, n), planes_at(at + 13 * n, n) },
                          .image = s->image,
                          .params = params,
                          .still = follows && last->still };
     step.rested = step.still ? s->rested + 1 : 0;
-    for (int i = 0; i < SUMS; i++)
-        step.sums[i] = at + (18 + (size_t)i) * n; /* they are used up when the picture is made */
+    for (int i = 0; i < SUM_SQUARES; i++)
+        step.sums[i] = at + (13 + (size_t)i) * n;
     return step;
 }
 

@@ -7,17 +7,18 @@
 #include <nocturne/smooth.h>
 
 /* Numbers a pixel. Light is what surfaces get, without their textures: the mean over the frames that are remembered,
- * how many those are, the mean over the last few of them, the second moment of the first mean's luminance. Shown is the
- * picture: what surfaces and sky have where no emitter is before them, frames, what emitters add and their share. */
-enum { LIGHT_FRAMES = 3, LIGHT_RECENT = 4, LIGHT_SQUARES = 7, SHOWN_FRAMES = 3, SHOWN_EMITTER = 4, SHOWN_SHARE = 7 };
-enum { HELD = 8 };
+ * how many those are, the luminance of the mean over the last few of them, the second moment of the first mean's. Shown
+ * is the picture: what surfaces and sky have where no emitter is before them, frames, what emitters add and their
+ * share. */
+enum { LIGHT_FRAMES = 3, LIGHT_RECENT, LIGHT_SQUARES, LIGHT_HELD };
+enum { SHOWN_FRAMES = 3, SHOWN_EMITTER = 4, SHOWN_SHARE = 7, SHOWN_HELD };
 enum { RECENT = 4 }; /* frames */
 enum { AROUND = 3 }; /* pixels: windows in which what changes is told from noise are so wide on each side */
 enum { FEW = 4 };    /* frames: with fewer of them variance is taken from the window */
 enum { MOST_PASSES = 6 };
 
-/* Sums over such windows. */
-typedef enum smooth_sum { SUM_CHANGE, SUM_KNOWN, SUM_FRAME, SUM_SQUARES, SUM_PIXELS, SUMS } smooth_sum;
+/* Sums over such windows; the last one is of squares of SUM_FRAME. */
+typedef enum smooth_sum { SUM_CHANGE, SUM_KNOWN, SUM_PIXELS, SUM_FRAME, SUM_SQUARES, SUMS } smooth_sum;
 
 /* Luminance, red and blue, which give green; and the variance of the luminance. */
 typedef struct smooth_planes {
@@ -28,22 +29,20 @@ typedef struct smooth_planes {
 typedef struct smooth_frame {
     int width, height;
     frame_camera camera;
-    float *inverse;           /* 1 / depth along the view, 1/m; 0: no surface that is filtered */
+    float *inverse;           /* 1 / depth along the view, 1/m; under 0: of an emitter; 0: there is no surface */
     float *slope_x, *slope_y; /* its change a pixel to the right and down, in the surface's plane */
     float *normal[3];
     uint32_t *what;
-    float *nearest; /* the largest inverse depth of the 3 x 3 pixels around, emitters too */
-    float (*light)[HELD], (*shown)[HELD];
+    float (*light)[LIGHT_HELD], (*shown)[SHOWN_HELD];
 } smooth_frame;
 
 /* A step, as kernels see it. */
 typedef struct smooth_step {
     smooth_frame now;
     const smooth_frame *then; /* NULL: there is none that motion leads to */
-    noc_frame_rows rows;
-    float *sums[SUMS];
+    noc_frame_rows rows; /* depth lies where now.inverse comes to lie; rgb in the end is the picture of this frame */
+    float *sums[SUM_SQUARES]; /* lie where planes[1] comes to lie */
     smooth_planes planes[2];
-    float (*made)[HELD]; /* as shown, of this frame; lies where sums did */
     noc_image *image;
     const noc_smooth_params *params;
     bool still; /* neither camera nor scene have changed */
@@ -58,7 +57,7 @@ typedef struct smooth_rows {
                                                     the row */
     void (*settle)(const smooth_step *s, int y); /* where light has changed, what is old is forgotten; planes[0] */
     void (*filter)(const smooth_step *s, int y); /* planes[pass & 1] to the others */
-    void (*make)(const smooth_step *s, int y);   /* the picture of this frame */
+    void (*make)(const smooth_step *s, int y);   /* the picture of this frame: rows.rgb */
     void (*show)(const smooth_step *s, int y);   /* accumulated */
 } smooth_rows;
 

@@ -19,18 +19,17 @@
 #define NORMAL_SHARPNESS 6.f  /* weights are 0 from 1 - 1/6 in cosine on: 34 degrees */
 #define ALIKE 0.9f            /* cosine between the normals of a surface now and then */
 #define REACH 16.f            /* (standard errors)^2 of luminance at which weights are 0 */
-#define RESTING 8.f          /* still frames after which REACH is half: the mean over frames takes the filter's place */
-#define CHANGE_SURE 9.f      /* (standard errors)^2 of a window's light from which on it has changed, */
-#define CHANGE_MAYBE 3.f     /* and under which it has not: neighbours share noise, so 3 is little */
-#define CHANGE_SEEN 0.1f     /* share of the light that is a standard error at least: smaller changes may be late */
-#define CHANGE_MOST 3.f      /* standard errors that a pixel counts for at most */
-#define SHOWN_TOLERANCE 0.1f /* of the depth: of the finished picture */
+#define RESTING 8.f      /* still frames after which REACH is half: the mean over frames takes the filter's place */
+#define CHANGE_SURE 9.f  /* (standard errors)^2 of a window's light from which on it has changed, */
+#define CHANGE_MAYBE 3.f /* and under which it has not: neighbours share noise, so 3 is little */
+#define CHANGE_SEEN 0.1f /* share of the light that is a standard error at least: smaller changes may be late */
+#define CHANGE_MOST 3.f  /* standard errors that a pixel counts for at most */
 #define MOST_LIGHT 1e30f
 #define STILL_FRAMES 1024.f /* remembered while nothing moves */
 #define GLOSS_LIGHT 0.02f   /* of the width of gloss: so far the eye turns while light is remembered, */
 #define GLOSS_SHOWN 0.3f    /* and the finished picture */
 #define SHOWN_STILL 128.f   /* frames of the finished picture that are averaged while nothing moves, */
-#define SHOWN_MOVING 6.f    /* and else, and for the first */
+#define SHOWN_MOVING 5.f    /* and else, and for the first */
 #define SHOWN_SKY 3.f       /* frames of a pixel of the sky in motion: what else is in them is brighter */
 #define SHOWN_EMITTERS 4.f  /* frames of what emitters add, in motion */
 #define SHOWN_SETTLES 12    /* still frames, until light has settled */
@@ -65,10 +64,10 @@ static void shape(const smooth_step *s, int y) {
             n[2] += normal[k][i] * c->forward[k];
         }
         float facing = n[2] + n[0] * sx + n[1] * sy;
-        bool some = kind_of(in->what[i]) == NOC_ROW_SURFACE && in->depth[i] > 0;
-        float inverse = some ? 1 / in->depth[i] : 0;
+        bool some = kind_of(in->what[i]) == NOC_ROW_SURFACE;
+        float inverse = in->depth[i] > 0 ? 1 / in->depth[i] : 0;
         float across = some && facing < -1e-6f ? inverse / facing : 0;
-        s->now.inverse[i] = inverse;
+        s->now.inverse[i] = some ? inverse : -inverse;
         s->now.slope_x[i] = across * n[0] * step_x;
         s->now.slope_y[i] = across * n[1] * step_y;
     }
@@ -117,7 +116,7 @@ static bool same_surface(const smooth_step *s, size_t i, size_t at, const place 
 }
 
 /* Light that is remembered of a surface; false: none. */
-static bool remembered(const smooth_step *s, int x, int y, size_t i, float out[HELD]) {
+static bool remembered(const smooth_step *s, int x, int y, size_t i, float out[LIGHT_HELD]) {
     const smooth_frame *then = s->then;
     float motion[3] = { s->rows.motion[0][i], s->rows.motion[1][i], s->rows.motion[2][i] }, total = 0;
     place p;
@@ -126,7 +125,7 @@ static bool remembered(const smooth_step *s, int x, int y, size_t i, float out[H
     float sx = (float)then->width / (float)s->now.width, sy = (float)then->height / (float)s->now.height;
     float seen_x = ((float)x + s->now.camera.jitter[0] + motion[0]) * sx - then->camera.jitter[0];
     float seen_y = ((float)y + s->now.camera.jitter[1] + motion[1]) * sy - then->camera.jitter[1];
-    for (int k = 0; k < HELD; k++)
+    for (int k = 0; k < LIGHT_HELD; k++)
         out[k] = 0;
     for (int tap = 0; tap < 4; tap++) {
         size_t at;
@@ -135,12 +134,12 @@ static bool remembered(const smooth_step *s, int x, int y, size_t i, float out[H
             continue;
         float share = share_of(&p, tap);
         total += share;
-        for (int k = 0; k < HELD; k++)
+        for (int k = 0; k < LIGHT_HELD; k++)
             out[k] += share * then->light[at][k];
     }
     if (!(total > 0.01f))
         return false;
-    for (int k = 0; k < HELD; k++)
+    for (int k = 0; k < LIGHT_HELD; k++)
         out[k] /= total;
     return true;
 }
@@ -153,35 +152,32 @@ static void light_now(const smooth_step *s, size_t i, float now[3]) {
     }
 }
 
-static void add_frame(float most, const float now[3], float light[HELD]) {
+static void add_frame(float most, const float now[3], float light[LIGHT_HELD]) {
     float frames = least_of(light[LIGHT_FRAMES], most - 1) + 1, share = 1 / frames;
-    float recent = 1 / least_of(frames, RECENT), y = luma(now[0], now[1], now[2]);
-    for (int k = 0; k < 3; k++) {
+    float y = luma(now[0], now[1], now[2]);
+    for (int k = 0; k < 3; k++)
         light[k] += (now[k] - light[k]) * share;
-        light[LIGHT_RECENT + k] += (now[k] - light[LIGHT_RECENT + k]) * recent;
-    }
+    light[LIGHT_RECENT] += (y - light[LIGHT_RECENT]) / least_of(frames, RECENT);
     light[LIGHT_SQUARES] += (y * y - light[LIGHT_SQUARES]) * share;
     light[LIGHT_FRAMES] = frames;
 }
 
 /* Of the luminance of one frame. */
-static inline float variance_of(const float light[HELD]) {
+static inline float variance_of(const float light[LIGHT_HELD]) {
     float mean = luma(light[0], light[1], light[2]), n = light[LIGHT_FRAMES];
     return n > 1 ? max_of(light[LIGHT_SQUARES] - mean * mean, 0) * n / (n - 1) : 0;
 }
 
 /* What a pixel adds to windows. */
-static void add_sums(const float light[HELD], const float now[3], float sums[SUMS]) {
-    const float *recent = light + LIGHT_RECENT;
+static void add_sums(const float light[LIGHT_HELD], const float now[3], float sums[SUM_SQUARES]) {
     float frames = light[LIGHT_FRAMES], y = luma(now[0], now[1], now[2]), mean = luma(light[0], light[1], light[2]);
     bool known = frames > RECENT;
     float seen = CHANGE_SEEN * mean, noise = variance_of(light) * (1 / (float)RECENT - 1 / frames) + seen * seen;
-    float off = (luma(recent[0], recent[1], recent[2]) - mean) / sqrtf(noise + 1e-30f);
+    float off = (light[LIGHT_RECENT] - mean) / sqrtf(noise + 1e-30f);
     sums[SUM_CHANGE] = known ? max_of(least_of(off, CHANGE_MOST), -CHANGE_MOST) : 0;
     sums[SUM_KNOWN] = known;
-    sums[SUM_FRAME] = y;
-    sums[SUM_SQUARES] = y * y;
     sums[SUM_PIXELS] = 1;
+    sums[SUM_FRAME] = y;
 }
 
 /* In which a camera sees a place of a picture of this size. */
@@ -219,10 +215,10 @@ static float glossy_frames(const smooth_step *s, int x, int y, float share) {
 static void gather(const smooth_step *s, int y) {
     for (int x = 0; x < s->now.width; x++) {
         size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
-        float *light = s->now.light[i], now[3], sums[SUMS] = { 0 };
+        float *light = s->now.light[i], now[3], sums[SUM_SQUARES] = { 0 };
         bool some = kind_of(s->now.what[i]) == NOC_ROW_SURFACE;
         if (!some || !remembered(s, x, y, i, light))
-            for (int k = 0; k < HELD; k++)
+            for (int k = 0; k < LIGHT_HELD; k++)
                 light[k] = 0;
         if (some) {
             light_now(s, i, now);
@@ -230,7 +226,7 @@ static void gather(const smooth_step *s, int y) {
             add_frame(least_of(most, glossy_frames(s, x, y, GLOSS_LIGHT)), now, light);
             add_sums(light, now, sums);
         }
-        for (int k = 0; k < SUMS; k++)
+        for (int k = 0; k < SUM_SQUARES; k++)
             s->sums[k][i] = sums[k];
     }
 }
@@ -243,9 +239,13 @@ static void window_sums(const smooth_step *s, int y, int from, int count, float 
         float column[CHUNK + 2 * AROUND] = { 0 };
         float *to = column + AROUND - from;
         for (int v = top; v <= bottom; v++) {
-            const float *in = s->sums[k] + (size_t)v * (size_t)width;
-            for (int x = low; x < high; x++)
-                to[x] += in[x];
+            const float *in = s->sums[least_int(k, SUM_FRAME)] + (size_t)v * (size_t)width;
+            if (k == SUM_SQUARES)
+                for (int x = low; x < high; x++)
+                    to[x] += in[x] * in[x];
+            else
+                for (int x = low; x < high; x++)
+                    to[x] += in[x];
         }
         for (int x = 0; x < count; x++) {
             float sum = 0;
@@ -263,14 +263,13 @@ static float changed(float change, float known) {
 }
 
 /* Both means give way to this frame alone. */
-static void forget(const smooth_step *s, size_t i, float light[HELD], float share) {
+static void forget(const smooth_step *s, size_t i, float light[LIGHT_HELD], float share) {
     float now[3];
     light_now(s, i, now);
     float y = luma(now[0], now[1], now[2]);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         light[k] += (now[k] - light[k]) * share;
-        light[LIGHT_RECENT + k] += (now[k] - light[LIGHT_RECENT + k]) * share;
-    }
+    light[LIGHT_RECENT] += (y - light[LIGHT_RECENT]) * share;
     light[LIGHT_SQUARES] += (y * y - light[LIGHT_SQUARES]) * share;
     light[LIGHT_FRAMES] += (1 - light[LIGHT_FRAMES]) * share;
 }
@@ -418,37 +417,31 @@ static void filter(const smooth_step *s, int y) {
 
 /* ---- the picture ---- */
 
-static float nearest_around(const smooth_step *s, int x, int y, size_t *at) {
+/* The pixel of the nearest thing of the 3 x 3 around. */
+static size_t nearest_around(const smooth_step *s, int x, int y) {
+    size_t at = (size_t)y * (size_t)s->now.width + (size_t)x;
     float nearest = 0;
-    *at = (size_t)y * (size_t)s->now.width + (size_t)x;
     for (int v = most_int(y - 1, 0); v <= least_int(y + 1, s->now.height - 1); v++)
         for (int u = most_int(x - 1, 0); u <= least_int(x + 1, s->now.width - 1); u++) {
             size_t i = (size_t)v * (size_t)s->now.width + (size_t)u;
-            float depth = s->rows.depth[i];
-            if (depth > 0 && depth * nearest < 1) {
-                nearest = 1 / depth;
-                *at = i;
-            }
+            float inverse = fabsf(s->now.inverse[i]);
+            at = inverse > nearest ? i : at;
+            nearest = max_of(inverse, nearest);
         }
-    return nearest;
+    return at;
 }
 
 static void make(const smooth_step *s, int y) {
     const smooth_planes *in = &s->planes[s->pass & 1];
     for (int x = 0; x < s->now.width; x++) {
-        size_t i = (size_t)y * (size_t)s->now.width + (size_t)x, at;
-        float *out = s->made[i], rgb[3] = { in->r[i], green(in->y[i], in->r[i], in->b[i]), in->b[i] };
-        noc_row_kind kind = kind_of(s->now.what[i]);
-        bool emitter = kind == NOC_ROW_EMITTER;
+        size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
+        float rgb[3] = { in->r[i], green(in->y[i], in->r[i], in->b[i]), in->b[i] };
+        bool surface = kind_of(s->now.what[i]) == NOC_ROW_SURFACE;
         for (int k = 0; k < 3; k++) {
             float seen = s->rows.rgb[k][i], light = max_of(rgb[k], 0) * s->rows.reflects[k][i];
             seen = fabsf(seen) < MOST_LIGHT ? seen : 0;
-            out[k] = emitter ? 0 : kind == NOC_ROW_SURFACE ? light : seen;
-            out[SHOWN_EMITTER + k] = emitter ? seen : 0;
+            s->rows.rgb[k][i] = surface ? light : seen;
         }
-        out[SHOWN_FRAMES] = !emitter;
-        out[SHOWN_SHARE] = emitter;
-        s->now.nearest[i] = nearest_around(s, x, y, &at);
     }
 }
 
@@ -460,8 +453,8 @@ static inline void cubic(float f, float out[4]) {
     out[3] = f * f * (-0.5f + 0.5f * f);
 }
 
-static void add_shown(const smooth_frame *then, size_t at, float share, float out[HELD]) {
-    for (int k = 0; k < HELD; k++)
+static void add_shown(const smooth_frame *then, size_t at, float share, float out[SHOWN_HELD]) {
+    for (int k = 0; k < SHOWN_HELD; k++)
         out[k] += share * then->shown[at][k];
 }
 
@@ -469,13 +462,13 @@ static void add_shown(const smooth_frame *then, size_t at, float share, float ou
 enum { KNOWN_SURFACE = 1, KNOWN_EMITTER = 2 };
 
 /* By cubics, which keep the picture sharp. */
-static void cubics_at(const smooth_frame *then, const place *p, float out[HELD]) {
+static void cubics_at(const smooth_frame *then, const place *p, float out[SHOWN_HELD]) {
     float wx[4], wy[4], frames = out[SHOWN_FRAMES];
     if (!(p->x >= 1 && p->y >= 1 && p->x + 2 < then->width && p->y + 2 < then->height))
         return;
     cubic(p->fx, wx);
     cubic(p->fy, wy);
-    for (int k = 0; k < HELD; k++)
+    for (int k = 0; k < SHOWN_HELD; k++)
         out[k] = 0;
     for (int v = 0; v < 4; v++)
         for (int u = 0; u < 4; u++)
@@ -483,20 +476,19 @@ static void cubics_at(const smooth_frame *then, const place *p, float out[HELD])
     out[SHOWN_FRAMES] = frames;
 }
 
-/* What was shown there; which of the two, and no number where neither is known. */
-static int shown_at(const smooth_step *s, const place *p, float out[HELD]) {
+/* What was shown there; which of the two, and no number where neither is known. Whether it is of the same things is
+ * not asked, but it is held to what they are now. */
+static int shown_at(const smooth_step *s, const place *p, float out[SHOWN_HELD]) {
     const smooth_frame *then = s->then;
     float surfaces = 0, emitters = 0, missing = 0;
     for (int tap = 0; tap < 4; tap++) {
         size_t at;
         float share = share_of(p, tap);
-        bool there = tap_of(then, p, tap, &at) &&
-                     (s->still || fabsf(then->nearest[at] - p->inverse) < SHOWN_TOLERANCE * p->inverse);
-        bool surface = there && then->shown[at][SHOWN_FRAMES] > 0;
+        bool there = tap_of(then, p, tap, &at), surface = there && then->shown[at][SHOWN_FRAMES] > 0;
         emitters += there ? share : 0;
         surfaces += surface ? share : 0;
         missing += surface ? 0 : share;
-        for (int k = SHOWN_EMITTER; k < HELD && there; k++)
+        for (int k = SHOWN_EMITTER; k < SHOWN_HELD && there; k++)
             out[k] += share * then->shown[at][k];
         for (int k = 0; k < SHOWN_EMITTER && surface; k++)
             out[k] += share * then->shown[at][k];
@@ -511,35 +503,46 @@ static int shown_at(const smooth_step *s, const place *p, float out[HELD]) {
     return (known[0] ? KNOWN_SURFACE : 0) | (known[1] ? KNOWN_EMITTER : 0);
 }
 
+/* What this frame has of a pixel, as shown. */
+static inline void made_at(const smooth_step *s, size_t i, float out[SHOWN_HELD]) {
+    bool emitter = kind_of(s->now.what[i]) == NOC_ROW_EMITTER;
+    for (int k = 0; k < 3; k++) {
+        out[k] = emitter ? 0 : s->rows.rgb[k][i];
+        out[SHOWN_EMITTER + k] = emitter ? s->rows.rgb[k][i] : 0;
+    }
+    out[SHOWN_FRAMES] = !emitter;
+    out[SHOWN_SHARE] = emitter;
+}
+
 /* What was shown, held to what this frame has around the pixel: surfaces and sky in the cross of five, so that little
  * of an edge comes to the dark beside it, emitters in all nine. So no light of theirs lies farther off than a pixel. */
-static void hold(const smooth_step *s, int x, int y, float shown[HELD]) {
-    float low[HELD], high[HELD];
-    for (int k = 0; k < HELD; k++) {
+static void hold(const smooth_step *s, int x, int y, float shown[SHOWN_HELD]) {
+    float low[SHOWN_HELD], high[SHOWN_HELD];
+    for (int k = 0; k < SHOWN_HELD; k++) {
         low[k] = MOST_LIGHT;
         high[k] = -1;
     }
     for (int v = most_int(y - 1, 0); v <= least_int(y + 1, s->now.height - 1); v++)
         for (int u = most_int(x - 1, 0); u <= least_int(x + 1, s->now.width - 1); u++) {
-            const float *made = s->made[(size_t)v * (size_t)s->now.width + (size_t)u];
+            float made[SHOWN_HELD];
+            made_at(s, (size_t)v * (size_t)s->now.width + (size_t)u, made);
             int from = made[SHOWN_FRAMES] > 0 && (u == x || v == y) ? 0 : SHOWN_EMITTER;
-            for (int k = from; k < HELD; k++) {
+            for (int k = from; k < SHOWN_HELD; k++) {
                 low[k] = least_of(made[k], low[k]);
                 high[k] = max_of(made[k], high[k]);
             }
         }
     for (int k = 0; k < 3 && high[0] >= 0; k++)
         shown[k] = max_of(least_of(shown[k], high[k]), low[k]);
-    for (int k = SHOWN_EMITTER; k < HELD && !s->still; k++)
+    for (int k = SHOWN_EMITTER; k < SHOWN_HELD && !s->still; k++)
         shown[k] = max_of(least_of(shown[k], high[k]), low[k]);
 }
 
 /* What was shown of a pixel, by the motion of the nearest thing around: edges move with what is before them. */
-static int shown_before(const smooth_step *s, int x, int y, float out[HELD]) {
+static int shown_before(const smooth_step *s, int x, int y, float out[SHOWN_HELD]) {
     float motion[3] = { 0, 0, 1 };
-    size_t at;
+    size_t at = nearest_around(s, x, y);
     place p;
-    nearest_around(s, x, y, &at);
     for (int k = 0; k < 3 && !s->still; k++)
         motion[k] = s->rows.motion[k][at];
     int known = s->params->antialias && place_before(s, x, y, motion, &p) ? shown_at(s, &p, out) : 0;
@@ -558,24 +561,26 @@ static float most_shown(const smooth_step *s, int x, int y) {
     return kind == NOC_ROW_SURFACE ? least_of(SHOWN_MOVING, glossy_frames(s, x, y, GLOSS_SHOWN)) : SHOWN_MOVING;
 }
 
-static void add_shown_frame(const smooth_step *s, float most, const float made[HELD], int known, float out[HELD]) {
+static void add_shown_frame(const smooth_step *s, float most, const float made[SHOWN_HELD], int known,
+                            float out[SHOWN_HELD]) {
     if (made[SHOWN_FRAMES] > 0) {
         out[SHOWN_FRAMES] = least_of(out[SHOWN_FRAMES], most - 1) + 1;
         for (int k = 0; k < 3; k++)
             out[k] += (made[k] - out[k]) / out[SHOWN_FRAMES];
     }
     float frames = known & KNOWN_EMITTER ? SHOWN_EMITTERS + least_of((float)s->rested, SHOWN_STILL) : 1;
-    for (int k = SHOWN_EMITTER; k < HELD; k++)
+    for (int k = SHOWN_EMITTER; k < SHOWN_HELD; k++)
         out[k] += (made[k] - out[k]) / frames;
 }
 
 static void show(const smooth_step *s, int y) {
     for (int x = 0; x < s->now.width; x++) {
         size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
-        float out[HELD] = { 0 };
+        float out[SHOWN_HELD] = { 0 }, made[SHOWN_HELD];
+        made_at(s, i, made);
         int known = shown_before(s, x, y, out);
-        add_shown_frame(s, most_shown(s, x, y), s->made[i], known, out);
-        for (int k = 0; k < HELD; k++)
+        add_shown_frame(s, most_shown(s, x, y), made, known, out);
+        for (int k = 0; k < SHOWN_HELD; k++)
             s->now.shown[i][k] = out[k];
         for (int k = 0; k < 3; k++)
             s->image->rgb[3 * i + (size_t)k] = out[k] * (1 - out[SHOWN_SHARE]) + out[SHOWN_EMITTER + k];
