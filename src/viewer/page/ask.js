@@ -189,6 +189,7 @@ export class Ask {
         if (answer.place) this.map.place = answer.place;
         if (what === 'lamp' && answer.place) this.app.highlight([{ light: answer.light, place: answer.place }]);
         this.map.redraw();
+        if (answer.done >= 1) this.#tell(what, answer);
         const held = document.activeElement?.closest?.('tr')?.dataset.light;
         this.out.replaceChildren(
             ...(what === 'lamp' ? this.#lamp(answer) : this.#place(answer)),
@@ -196,6 +197,14 @@ export class Ask {
         );
         if (held) this.out.querySelector(`tr[data-light="${held}"]`)?.focus();
         this.panes.draw();
+    }
+
+    #tell(what, answer) {
+        const first = answer.rows?.[0];
+        const most = first ? ` Most of it, ${number(100 * first.share)} %, by ${first.name || first.kind}.` : '';
+        const light = answer.lux !== undefined ? `${number(answer.lux)} lx.${most}` : 'Nothing is there: the sky.';
+        const lamp = `${answer.name || answer.kind}, ${number(answer.lumens)} lm.`;
+        this.app.emit('said', what === 'lamp' ? lamp : `Who lights ${this.#what}? ${light}`);
     }
 
     #facts(pairs) {

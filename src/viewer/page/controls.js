@@ -40,6 +40,7 @@ function numeric(option, change, labels) {
         max: STEPS,
         step: 1,
         ...labels,
+        id: null, // the label is the box's
         'aria-label': `${option.name}, slider`,
     });
     const slide = () => {

@@ -50,6 +50,9 @@ app.on('welcome', () => {
     document.title = app.scene.name ? `${app.scene.name} – Nocturne` : 'Nocturne';
 });
 
+// What is told once, to who does not see it.
+app.on('said', (text) => ($('said').textContent = text));
+
 input.on('pick', (hit) => (input.picker ? input.picker(hit) : ask.pick(hit)));
 input.on('jump', (hit) => app.jump(hit));
 

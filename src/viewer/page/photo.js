@@ -19,6 +19,7 @@ export class Photo {
             type: 'file',
             accept: 'image/*',
             id: 'photo-file',
+            'aria-label': 'Photograph',
             on: { change: () => this.#load() },
         });
         this.opacity = this.#slider('Opacity', 60);
