@@ -94,7 +94,7 @@ if [ -w /dev/full ]; then
     [ $? = 1 ] && grep -q 'No space left' err
     result $? "a full disk is told"
 fi
-timeout --preserve-status -s INT 3 "$program" influence builtin:city -q --region "street:street 1" --error 1e-6 \
+timeout --preserve-status -s INT 15 "$program" influence builtin:city -q --region "street:street 1" --error 1e-6 \
     --time 0 >out 2>err </dev/null
 [ $? = 130 ] && grep -q interrupted err && [ ! -s out ]
 result $? "Ctrl-C ends it"
