@@ -422,7 +422,10 @@ class Tests:
         captions = page.evaluate("[...document.querySelectorAll('.caption')].map((one) => one.innerText)")
         assert len(set(captions)) == 6 and captions[-1] == 'ReSTIR' and all(captions), captions
         assert page.evaluate("viewer.state.panes.every(({ values }) => values.smooth === 'false')")
+        page.evaluate("document.querySelectorAll('.picture')[2].dataset.n = 'old'")
         page.press('#layouts button[data-name=difference]')
+        page.wait("viewer.state.layout === 'difference'")
+        assert page.evaluate("document.querySelectorAll('.picture')[2].dataset.n !== 'old'"), 'a picture of RIS is left'
         page.wait("[...document.querySelectorAll('.caption')].some((one) => one.textContent.includes('RMSE'))", 60)
         assert page.evaluate("viewer.state.panes[0].values.smooth === 'true'")
         page.wait("/early, after \\d+ frame/.test(document.querySelectorAll('.caption')[2].textContent)")

@@ -3,6 +3,7 @@ import { el, button, number, clamp } from './dom.js';
 
 const KEPT = 'nocturne legend';
 const GAP = 10; // CSS pixels around it
+const ROOM = 0.05; // of the bar, for a number
 const STEP = 0.1; // of the room, by keys
 
 export class Legend {
@@ -188,7 +189,11 @@ export class Legend {
         this.auto.setAttribute('aria-pressed', !values['show-range'] || values['show-range'] === 'auto');
         if (document.activeElement !== this.lines)
             this.lines.value = values.isolines === '0' ? '' : (values.isolines ?? '');
-        const within = (legend.isolines ?? []).filter((value) => value >= legend.low && value <= legend.high);
+        let last = -1;
+        const apart = (value) => this.#part(legend, value) - last > ROOM && (last = this.#part(legend, value)) >= 0;
+        const within = (legend.isolines ?? []).filter(
+            (value) => value >= legend.low && value <= legend.high && apart(value),
+        );
         this.ticks.replaceChildren(
             ...(within.length ? within : ticks(legend)).map((value) => {
                 const tick = el('span', { text: number(value) });

@@ -104,6 +104,7 @@ export class Panes {
     #arrange(state) {
         const wanted = Math.max(state.panes?.length ?? 1, 1);
         const changed = wanted !== this.panes.length || state.layout !== this.layout;
+        if ((state.layout ?? 'single') !== this.layout) this.#blank();
         this.layout = state.layout ?? 'single';
         while (this.panes.length > wanted) this.panes.pop().root.remove();
         while (this.panes.length < wanted) this.#add();
@@ -111,6 +112,14 @@ export class Panes {
         if (changed) this.#grid(wanted);
         this.#captions();
         this.draw();
+    }
+
+    // Pictures of another layout would stand under names that are not theirs.
+    #blank() {
+        for (const { canvas, context } of this.panes.slice(1)) {
+            context.clearRect(0, 0, canvas.width, canvas.height);
+            delete canvas.dataset.n;
+        }
     }
 
     #add() {
