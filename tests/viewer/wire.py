@@ -121,6 +121,7 @@ class Client:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive)
         self.socket.settimeout(20)
         self.socket.connect((program.address, program.port))
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as browsers do
         host = "127.0.0.1:%d" % program.port if host is None else host
         lines = ["GET %s HTTP/1.1" % (path or "/ws?token=" + TOKEN), "Host: " + host, "Connection: Upgrade",
                  "Upgrade: websocket", "Sec-WebSocket-Version: 13",
