@@ -18,6 +18,17 @@ def ready(page):
     page.wait("globalThis.viewer?.state && document.querySelector('.picture').dataset.n", 120)
 
 
+def shown(page, rest):
+    """Waits for pictures of what was asked for: the second that comes was begun after it."""
+    page.evaluate('''new Promise((done) => {
+        let left = 2;
+        const watch = new MutationObserver(() => --left || (watch.disconnect(), done()));
+        watch.observe(document.querySelector('.picture'), { attributes: true, attributeFilter: ['data-frames'] });
+        setTimeout(done, 6000); // there are no more
+    })''')
+    page.browser.listen(rest)
+
+
 def panel(page, name, opened=True):
     page.evaluate(f'''(() => {{
         const tab = [...document.querySelectorAll('#tabs button')].find((one) => one.textContent === '{name}');
@@ -52,13 +63,13 @@ def every(machine, link, folder):
         ready(page)
 
         def shot(what, rest=REST):
-            machine.listen(rest)
+            shown(page, rest)
             page.screenshot(os.path.join(folder, f'{name}-{what}.png'))
 
         shot('picture')
         for mode in page.evaluate('viewer.schema.modes.map((one) => one.name)'):
             show(page, mode)
-            shot(f'mode-{mode}', REST / 2)
+            shot(f'mode-{mode}', 0)
         show(page, page.evaluate('viewer.schema.modes[0].name'))
         for one in ('divider', 'methods', 'difference'):
             layout(page, one)
@@ -68,7 +79,7 @@ def every(machine, link, folder):
             panel(page, one)
             if one == 'Lights':
                 pick(page, 0.5, 0.75)
-            shot(f'panel-{one.lower()}', REST / 2)
+            shot(f'panel-{one.lower()}', 0)
             panel(page, one, False)
         if page.errors:
             print(f'{name}: {page.errors}')
@@ -81,20 +92,20 @@ def for_docs(machine, link, folder):
     page.viewport(1280, 720, density=0.75)
     panel(page, 'Settings')
     panel(page, 'Map')
-    machine.listen(2 * REST)
+    shown(page, REST)
     page.screenshot(os.path.join(folder, 'settings-map.png'))
     panel(page, 'Settings', False)
     panel(page, 'Lights')
     pick(page, 0.45, 0.75)
-    machine.listen(2 * REST)
+    shown(page, REST)
     page.screenshot(os.path.join(folder, 'who-lights-this.png'))
     panel(page, 'Lights', False)
     show(page, 'illuminance')
-    machine.listen(2 * REST)
+    shown(page, REST)
     page.screenshot(os.path.join(folder, 'illuminance.png'))
     show(page, page.evaluate('viewer.schema.modes[0].name'))
     layout(page, 'methods')
-    machine.listen(2 * REST)
+    shown(page, REST)
     page.screenshot(os.path.join(folder, 'methods.png'))
     page.close()
 

@@ -2,6 +2,7 @@
 """The viewer's page in Chromium, as hands use it: what they do is seen in the picture, and the console is silent."""
 import json
 import math
+import re
 import sys
 
 import browser
@@ -429,6 +430,9 @@ class Tests:
         page.wait("[...document.querySelectorAll('.caption')].some((one) => one.textContent.includes('RMSE'))", 60)
         assert page.evaluate("viewer.state.panes[0].values.smooth === 'true'")
         page.wait("/early, after \\d+ frame/.test(document.querySelectorAll('.caption')[2].textContent)")
+        said = page.evaluate("[document.querySelectorAll('.caption')[2].textContent, viewer.stats[2].bias]")
+        bias = float(re.search(r'bias (-?[\d.,]+) %', said[0])[1].replace(',', ''))
+        assert abs(bias - 100 * (said[1] - 1)) < 0.6 + 0.1 * abs(bias), said
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
         low, high = page.evaluate('[viewer.stats[2].legend.low, viewer.stats[2].legend.high]')
         assert low == -high and high > 0, (low, high)

@@ -161,7 +161,7 @@ export class Panes {
             const says = [this.states[index]?.caption ?? ''];
             if (stats?.rmse !== undefined) says.push(`RMSE ${number(stats.rmse)} cd/m²`);
             if (stats?.relmse !== undefined) says.push(`relMSE ${number(stats.relmse)}`);
-            if (stats?.bias !== undefined) says.push(`bias ${number(stats.bias)} cd/m²`);
+            if (stats?.bias !== undefined) says.push(`bias ${number(100 * (stats.bias - 1), 2)} %`);
             if (stats?.rmse !== undefined && stats.frames < ENOUGH)
                 says.push(`early, after ${stats.frames} ${stats.frames === 1 ? 'frame' : 'frames'}`);
             caption.textContent = this.panes.length > 1 ? says.filter((one) => one).join(' · ') : '';
