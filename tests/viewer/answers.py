@@ -1,0 +1,163 @@
+"""What `nocturne view` answers: who lights a place, names, outlines, cards of lamps."""
+import struct
+import sys
+
+import hand
+from hand import enter, near, said
+from wire import Picture
+
+
+def ask(c, what, timeout=180, **values):
+    c.say("ask", what=what, **values)
+    while True:
+        answer = said(c, "answer", lambda m: m["id"] == values["id"], timeout)
+        if answer["done"] >= 1:
+            return answer
+
+
+def test_who_lights_this(p):
+    c = enter(p)
+    answer = ask(c, "pixel", id=1, pane=0, x=0.5, y=0.9)
+    assert answer["lux"] > 0 and len(answer["place"]) == 3 and answer["class"], answer
+    shares = [row["share"] for row in answer["rows"]]
+    assert abs(sum(shares) - 1) < 0.02 and all(row["error"] >= 0 for row in answer["rows"]), sum(shares)
+    named = [row["share"] for row in answer["rows"] if row["light"] >= 0]
+    assert named == sorted(named, reverse=True) and len(named) > 1
+    lamp = ask(c, "lamp", id=2, light=answer["rows"][0]["light"])
+    assert near(lamp["place"], answer["rows"][0]["place"], 0.01) and lamp["lumens"] > 0
+    assert lamp["group"] == "lamps" and 1800 < lamp["kelvin"] < 7000, lamp
+    assert ask(c, "region", id=3, pane=0, rect=[0.4, 0.8, 0.6, 0.95])["lux"] > 0
+    whole = ask(c, "region", id=6, pane=0, object=answer["object"])
+    areas = [one["area"] for one in whole["classes"]]
+    assert abs(sum(areas) / whole["area"] - 1) < 0.001 and areas == sorted(areas, reverse=True), whole
+    mean = sum(one["area"] * one["lux"] for one in whole["classes"]) / sum(areas)
+    assert abs(mean - whole["lux"]) < 6 * whole["lux_error"] + 0.05 * mean, (mean, whole)
+    assert all(one["class"] and one["lux_error"] >= 0 for one in whole["classes"])
+    assert "classes" not in answer
+    c.say("save", id=9, what="csv", of=1)
+    file = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2)
+    name, text = file.body[:file.name_size].decode(), file.body[file.name_size:].decode()
+    lines = text.splitlines()
+    assert file.number == 9 and name == "lights.csv" and lines[0].startswith("rank,name,kind,of,lux,"), lines[0]
+    assert len(lines) == 1 + answer["emitters"] + 2, (len(lines), answer["emitters"])
+    assert answer["emitters"] > len(named)
+    assert '"sky"' in lines[-2] and '"all"' in lines[-1], lines[-2:]
+    listed = [line.split(",") for line in lines[1:-2]]
+    assert abs(sum(float(row[6]) for row in listed) + float(lines[-2].split(",")[6]) - 1) < 0.001
+    c.say("save", id=10, what="csv", of=12345)
+    assert said(c, "note")["level"] == "error"
+    assert "refused" in ask(c, "lamp", id=4, light=999999999)
+    c.say("ask", id=5, what="lights")
+    lights = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 3)
+    count = int.from_bytes(lights.body[4:8], "little")
+    assert lights.number == 5 and count > 10 and len(lights.body) >= 8 + 24 * count
+    at, record, sections = 0, {1: 24, 2: 16, 3: 12, 5: 1, 6: 12, 7: 1}, {}
+    while at < len(lights.body):
+        kind, count = struct.unpack_from("<II", lights.body, at)
+        sections[kind] = lights.body[at + 8:at + 8 + record[kind] * count]
+        at += 8 + record[kind] * count
+    west, south, east, north, width, height = struct.unpack_from("<4f2I", sections[5])
+    cells = sections[5][24:]
+    assert west < east and south < north and 0 < width <= 512 and 0 < height <= 512 and len(cells) == width * height
+    names = sections[7].decode().split("\0")
+    lines = {struct.unpack_from("<I", sections[6], i + 8)[0] for i in range(0, len(sections[6]), 12)}
+    assert "Ring West" in names and names[-1] == "" and lines == set(range(len(names) - 1)), names
+    assert set(cells) == {0, 1} and 0.1 < sum(cells) / len(cells) < 0.9, sum(cells) / len(cells)
+    c.close()
+
+
+def test_names_are_found(p):
+    c = enter(p)
+    answer = ask(c, "find", id=1, text="RING ")
+    streets = [one["name"] for one in answer["found"] if one["kind"] == "street"]
+    assert "Ring North" in streets and len(streets) == len(set(streets)) <= 12, answer
+    found = ask(c, "find", id=2, text="lamp")["found"]
+    assert {"lamp", "group"} <= {one["kind"] for one in found} and len(found) <= 48, found
+    lamp = next(one for one in found if one["kind"] == "lamp")
+    named = ask(c, "name", id=3, light=lamp["light"])
+    assert named["name"] == lamp["name"] and near(named["place"], lamp["place"]), (named, lamp)
+    exact = ask(c, "find", id=4, text=lamp["name"])["found"]
+    assert exact[0]["name"] == lamp["name"], exact[:3]
+    assert ask(c, "find", id=5, text="no such name")["found"] == []
+    assert ask(c, "find", id=6, text="")["found"] == []
+    middle = ask(c, "name", id=7, street="Ring South")["place"]
+    there = ask(c, "name", id=8, at=middle[:2])
+    assert there["street"].startswith("Ring") and near(there["place"], middle, 0.01), there
+    building = next(one for one in ask(c, "find", id=9, text="building")["found"] if one["kind"] == "object")
+    assert len(ask(c, "name", id=10, object=building["name"])["place"]) == 3
+    assert "refused" in ask(c, "name", id=11, street="no such street")
+    street = ask(c, "region", id=12, street="Ring South")
+    whole = ask(c, "region", id=13, object="streets") if "object" in there else None
+    assert 0 < street["area"] and (whole is None or street["area"] < 0.5 * whole["area"]), street["area"]
+    assert "refused" in ask(c, "region", id=14, street="no such street")
+    c.close()
+
+
+def test_regions_have_outlines(p):
+    c = enter(p)
+    answer = ask(c, "region", id=1, pane=0, rect=[0.4, 0.8, 0.6, 0.95])
+    assert len(answer["outline"]) > 30 and all(len(place) == 3 for place in answer["outline"])
+    x, y = answer["place"][:2]
+    square = [[x - 5, y - 5], [x + 5, y - 5], [x + 5, y + 5], [x - 5, y + 5]]
+    outline = ask(c, "region", id=2, polygon=square)["outline"]
+    assert all(min(abs(abs(px - x) - 5), abs(abs(py - y) - 5)) < 0.01 for px, py, _ in outline), outline
+    c.close()
+
+
+def test_a_card_tells_what_a_lamp_lights(p):
+    c = enter(p)
+    light = next(one["light"] for one in ask(c, "find", id=1, text="lamp")["found"] if one["kind"] == "lamp")
+    c.say("ask", what="lamp", id=2, light=light)
+    first = said(c, "answer", lambda m: m["id"] == 2)
+    assert first["done"] < 1 and first["lumens"] > 0 and "reach" not in first
+    card = said(c, "answer", lambda m: m["id"] == 2 and m["done"] >= 1)
+    assert 2 < card["height"] < 20, card["height"]
+    reach = card["reach"]
+    assert reach["area"] > 10 and reach["far"] > 5 and 0 < reach["met"] <= card["lumens"] * 1.01, reach
+    lumens = [one["lumens"] for one in reach["most_lit"]]
+    assert lumens == sorted(lumens, reverse=True) and 0 < len(lumens) <= 12
+    c.close()
+
+
+def test_places_are_gone_to_where_they_are_seen(p):
+    """From wherever one is, a lamp and a street are seen in the middle of the picture, with nothing in between."""
+    c = enter(p)
+    lamps = [one for one in ask(c, "find", id=1, text="lamp")["found"] if one["kind"] == "lamp"][:6]
+    street = ask(c, "name", id=2, street="Ring East")["place"]
+    for n, place in enumerate([one["place"] for one in lamps] + [street]):
+        c.say("jump", n=n + 1, place=place, distance=25, still=True)
+        camera = said(c, "state", lambda m: near(m["camera"]["target"], place, 0.01))["camera"]
+        away = sum((a - b) ** 2 for a, b in zip(camera["eye"], place)) ** 0.5
+        assert 3 < away < 27, away
+        seen = ask(c, "pixel", id=10 + n, pane=0, x=0.5, y=0.5)
+        assert sum((a - b) ** 2 for a, b in zip(seen["place"], place)) ** 0.5 < 3, (seen["place"], place)
+    c.close()
+
+
+def test_lights_have_their_names_in_legends(p):
+    c = enter(p)
+    for number, mode in enumerate(("influential", "runner-up", "light")):
+        c.say("set", pane=0, name="show", value=mode)
+        said(c, "state", lambda m: m["panes"][0]["values"]["show"] == mode)
+        labels = said(c, "stats", lambda m: m.get("legend") and m["legend"].get("labels"))["legend"]["labels"]
+        assert 0 < len(labels) <= 12, labels
+        assert len({label["number"] for label in labels}) == len(labels)
+        for label in labels[:3]:
+            lamp = ask(c, "lamp", id=50 + number, light=label["number"])
+            assert label["text"] != str(label["number"]) and label["colour"][0] == "#", label
+            assert lamp["name"][:20] in label["text"], (lamp["name"], label)
+    c.close()
+
+
+def test_questions_can_be_taken_back(p):
+    c = enter(p)
+    for i in range(30): # more than may wait: the oldest are refused, and the last is answered
+        c.say("ask", id=i, what="region", pane=0, rect=[0, 0, 1, 1])
+    for i in range(29):
+        c.say("cancel", id=i)
+    answer = ask(c, "pixel", id=100, pane=0, x=0.5, y=0.9)
+    assert answer["lux"] > 0
+    c.close()
+
+
+hand.run(sys.modules[__name__])

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""The page for who does not see, point or have much room."""
+from leaf import Opened, blur, camera, opened, rests, run, state
+
+
+class Access(Opened):
+    def test_by_keys_alone(self):
+        page = self.page
+        blur(page)
+        page.evaluate("document.getElementById('stage').focus()")
+        page.key('?', shift=True)
+        page.wait("document.getElementById('help').open")
+        page.key('Escape')
+        page.wait("!document.getElementById('help').open")
+        seen = []
+        for _ in range(40):  # the tab key comes to every panel's button
+            page.key('Tab')
+            seen.append(page.evaluate('document.activeElement.textContent'))
+            if seen[-1] == 'Settings':
+                break
+        assert seen[-1] == 'Settings', seen
+        page.key('Enter')
+        page.wait("!document.getElementById('left').hidden")
+        page.key('Escape')
+        page.wait("document.getElementById('left').hidden")
+        assert page.evaluate('document.activeElement.textContent') == 'Settings', 'the focus did not come back'
+        page.evaluate("document.querySelector('#modes button[tabindex=\"0\"]').focus()")
+        page.key('ArrowRight')
+        name = page.evaluate('document.activeElement.dataset.name')
+        page.wait(f"viewer.state.panes[0].values.show === '{name}'")
+        page.key('ArrowLeft')
+        page.wait("viewer.state.panes[0].values.show === 'picture'")
+
+    def test_everything_has_a_key_a_name_and_a_focus(self):
+        """Tab reaches every control that is seen; each has a name, and shows that it has the focus."""
+        page = self.page
+        for key in 'pb':
+            page.key(key)
+            blur(page)
+        lacking = """(() => {
+            const name = (one) => one.ariaLabel || one.getAttribute('aria-labelledby') || one.labels?.[0]?.textContent
+                || one.textContent.trim() || one.title;
+            const all = [...document.querySelectorAll('button, input, select, textarea, [tabindex], a, summary')];
+            return all.filter((one) => !name(one)).map((one) => one.outerHTML.slice(0, 120));
+        })()"""
+        assert page.evaluate(lacking) == [], page.evaluate(lacking)
+        signs = page.evaluate("""[...document.querySelectorAll('button')].filter((one) => !one.ariaLabel && !one.title
+            && !/[A-Za-z0-9]/.test(one.textContent)).map((one) => one.outerHTML)""")
+        assert signs == [], signs
+        wanted = page.evaluate("""(() => {
+            const all = [...document.querySelectorAll('button, input, select, textarea, summary, canvas[tabindex]')];
+            const seen = all.filter((one) => one.offsetParent && !one.disabled && one.tabIndex >= 0
+                && !(one.type === 'radio'));
+            seen.forEach((one, i) => (one.dataset.wanted = i));
+            return seen.length;
+        })()""")
+        page.evaluate("document.getElementById('stage').focus()")
+        reached, unseen = set(), []
+        for _ in range(wanted + 60):
+            page.key('Tab')
+            one = page.evaluate("""(({ dataset, outerHTML }, style) => [dataset.wanted, outerHTML.slice(0, 100),
+                style.outlineStyle, parseFloat(style.outlineWidth)])
+                (document.activeElement, getComputedStyle(document.activeElement))""")
+            if one[0] is not None:
+                reached.add(int(one[0]))
+            if one[0] is not None and (one[2] == 'none' or not one[3]):
+                unseen.append(one[1])
+        assert not unseen, unseen[:3]
+        missing = sorted(set(range(wanted)) - reached)
+        assert not missing, [page.evaluate(f"document.querySelector('[data-wanted=\"{i}\"]').outerHTML")[:100]
+                             for i in missing[:4]]
+        for key in 'pb':
+            blur(page)
+            page.key(key)
+        roles = page.evaluate("""['said', 'toasts', 'loading'].map((id) => document.getElementById(id))
+            .map((one) => one.getAttribute('aria-live') ?? one.getAttribute('role'))""")
+        assert roles == ['polite', 'polite', 'status'], roles
+
+    def test_text_has_contrast(self):
+        """All text that is seen, over panels on a white picture, has a contrast of 4.5 to 1 at least."""
+        page = self.page
+        page.key('p')
+        page.evaluate("document.querySelectorAll('.settings details').forEach((one) => (one.open = true))")
+        page.key('b')
+        low = page.evaluate("""(() => {
+            const parse = (text) => {
+                const [r, g, b, a] = text.match(/[\\d.]+/g).map(Number);
+                return [r, g, b, a ?? 1];
+            };
+            const over = (top, under) => [0, 1, 2].map((i) => top[i] * top[3] + under[i] * (1 - top[3]));
+            const light = (c) => {
+                const [r, g, b] = c.map((x) => (x / 255 <= 0.04045 ? x / 3294.6 : ((x / 255 + 0.055) / 1.055) ** 2.4));
+                return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            };
+            const found = [];
+            for (const one of document.querySelectorAll('body *')) {
+                const own = [...one.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
+                const field = one.matches('input:not([type=checkbox], [type=range], [type=color]), textarea');
+                if (!(own || field) || !one.offsetParent || one.closest(':disabled, .pane, .hidden, #legend')) continue;
+                const line = [];
+                for (let at = one; at; at = at.parentElement) line.unshift(at);
+                let back = [255, 255, 255], opacity = 1;
+                for (const at of line) {
+                    const style = getComputedStyle(at);
+                    if (at.matches('html, body')) continue;
+                    opacity *= Number(style.opacity);
+                    back = over(parse(style.backgroundColor), back);
+                }
+                const colour = parse(getComputedStyle(one).color);
+                const text = over([...colour.slice(0, 3), colour[3] * opacity], back);
+                const [a, b] = [light(text), light(back)].sort((x, y) => y - x);
+                const ratio = (a + 0.05) / (b + 0.05);
+                if (ratio < 4.5) found.push([one.outerHTML.slice(0, 90), ratio]);
+            }
+            return found;
+        })()""")
+        assert low == [], low[:5]
+        page.key('Escape')
+        for drawer in ('left', 'right'):
+            page.evaluate(f"document.querySelector('#{drawer} .panel:not([hidden]) .close')?.click()")
+        blur(page)
+
+    def test_less_motion(self):
+        """Who wants less motion is at another camera at once, without a flight."""
+        still = opened(self.machine, self.served.link)
+        still.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-reduced-motion', 'value': 'reduce'}])
+        still.evaluate("viewer.goTo('street')")
+        still.wait("viewer.state.camera.name === 'street'")
+        rests(still)
+        still.evaluate("(viewer.went = [], viewer.on('stats', ({ camera }) => viewer.went.push(camera.eye[2])), 0)")
+        still.evaluate("viewer.goTo('aerial')")
+        still.wait("viewer.state.camera.name === 'aerial' && viewer.camera.eye[2] > 10")
+        rests(still)
+        ends = still.evaluate('[viewer.went[0], viewer.camera.eye[2]]')
+        between = [z for z in still.evaluate('viewer.went') if min(abs(z - ends[1]), abs(z - 1.7)) > 0.3]
+        assert not between, between
+        still.close()
+
+    def test_on_a_phone(self):
+        phone = opened(self.machine, self.served.link, width=390, height=844, phone=True)
+        for width, height in ((390, 844), (844, 390)):
+            phone.viewport(width, height, True)
+            self.machine.listen(0.3)
+            wide = phone.evaluate('document.documentElement.scrollWidth')
+            assert wide <= width, f'the page is {wide} wide on {width}'
+        before = phone.wait('viewer.camera')
+        phone.touch('touchStart', [(400, 250)])
+        for x in range(410, 500, 10):
+            phone.touch('touchMove', [(x, 250)])
+        phone.touch('touchEnd', [])
+        phone.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {before["target"]}[i])) > 0.3')
+        phone.press('#tabs button')
+        phone.wait("!document.getElementById('left').hidden")
+        box = phone.evaluate("['clientWidth', 'clientHeight'].map((side) => document.getElementById('stage')[side])")
+        assert min(box) > 150, f'the picture has {box} left'
+        assert not phone.errors, phone.errors
+        phone.close()
+
+
+if __name__ == '__main__':
+    run(Access)

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""The page's map, search, bookmarks and photograph."""
+from leaf import Opened, blur, camera, direction, far, on_stage, opened, press_text, rests, run, seen_at, state
+
+
+class Places(Opened):
+    def test_outlines_stay(self):
+        """A rectangle that was asked about is seen in the picture and on the map until it is cleared."""
+        page = self.page
+        painted = """(() => {
+            const canvas = document.querySelector('.overlay');
+            const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            let count = 0;
+            for (let i = 0; i < data.length; i += 4)
+                count += data[i + 3] > 100 && data[i] > 100 && data[i] < 150 && data[i + 2] > 230;
+            return count;
+        })()"""
+        on_map = painted.replace('.overlay', '.map')
+        on_map = on_map.replace('data[i + 2] > 230', 'data[i + 2] > 230 && data[i + 1] > 160')
+        page.key('m')
+        page.wait("document.querySelector('.map').width > 200")
+        before = page.evaluate(on_map)
+        page.key('t')
+        press_text(page, 'Rectangle')
+        page.drag(60, 250, 200, 370)
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        assert page.evaluate(painted) > 100
+        assert 'this rectangle of the picture' in page.evaluate("document.querySelector('.answer h3').textContent")
+        page.key('m')
+        page.wait(f'{on_map} > {before} + 20')
+        page.key('t')
+        press_text(page, 'Clear')
+        page.wait(f'{painted} === 0')
+        page.key('m')
+        page.wait(f'{on_map} <= {before} + 5')
+        page.key('m')
+
+    def test_finds_by_name(self):
+        page = self.page
+        page.key('/')
+        page.type('ring e')
+        page.wait("document.querySelector('.found li')?.dataset.kind === 'street'")
+        page.key('Enter')
+        page.wait("document.querySelector('.answer h3')?.textContent === 'Who lights Ring East?'")
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.key('b')
+        press_text(page, 'Go there')
+        page.wait('viewer.state.camera.eye[2] > 2')
+        rests(page)
+        page.evaluate("(document.querySelector('.finder input').value = '', 0)")
+        page.key('b')
+        page.evaluate("viewer.goTo('street')")
+        page.wait("viewer.state.camera.name === 'street'")
+        rests(page)
+
+    def test_map_tells_names_and_scale(self):
+        page = self.page
+        page.key('m')
+        page.wait("/^\\d+ k?m$/.test(document.querySelector('.map-scale').textContent)")
+        bar = page.evaluate("(({ textContent, offsetWidth }) => [textContent, offsetWidth])"
+                            "(document.querySelector('.map-scale'))")
+        assert bar[0].split()[0].strip('0') in ('1', '2', '5') and 24 < bar[1] <= 121, bar
+        light = page.evaluate("document.querySelector('.map').getBoundingClientRect().toJSON()")
+        found = False
+        for y in range(10, int(light['height']) - 10, 9):  # until the pointer comes over something
+            page.mouse('mouseMoved', light['x'] + light['width'] / 2, light['y'] + y)
+            self.machine.listen(0.4)
+            found = found or page.evaluate("!document.querySelector('.map-tip').hidden")
+            if found:
+                break
+        assert found, 'nothing has a name'
+        assert page.evaluate("document.querySelector('.map-tip').textContent.length") > 3
+        page.key('m')
+
+    def test_settings_are_found_by_what_they_do(self):
+        page = self.page
+        page.key('p')
+        for word in ('dim', 'LED', 'sodium', 'off'):
+            page.evaluate("(document.querySelector('input[type=search]').value = '', 0)")
+            page.press('input[type=search]')
+            page.type(word)
+            page.wait("document.querySelector('.control[data-name=\"group.lamps\"]').offsetParent !== null")
+        lamps = """document.querySelector('.control[data-name="group.lamps"] input[type=color]')"""
+        swatch = page.evaluate(f'{lamps}.value')
+        assert swatch not in ('#000000', '#ffffff') and swatch[1:3] > swatch[5:7], swatch
+        label = page.evaluate("document.querySelector('label[for=\"option-window-lit\"]').textContent")
+        assert label == 'share of windows lit at 21 h', label
+        titles = page.evaluate("[...document.querySelectorAll('.presets button')].map((one) => one.title)")
+        assert 'sets hour 3, lamps 0.5,own' in titles, titles
+        page.evaluate("(document.querySelector('input[type=search]').value = '', 0)")
+        page.key('Escape')
+        page.wait("document.getElementById('left').hidden")
+
+    def test_bookmarks(self):
+        page = self.page
+        there = camera(page)
+        page.key('b')
+        page.press('#right .panel:not([hidden]) form input')
+        page.type('corner')
+        page.key('Enter')
+        page.wait("document.querySelector('.bookmarks .name')?.textContent === 'corner'")
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("viewer.state.camera.name === 'aerial'")
+        page.press('.bookmarks .name')
+        page.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {there['eye']}[i])) < 0.01")
+        blur(page)
+        page.key('b')
+
+    def test_photograph(self):
+        """The camera of a photograph is found from places that are clicked in it and in the picture."""
+        page = opened(self.machine, self.served.link, width=1000, height=500)
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("viewer.state.camera.name === 'aerial'")
+        page.key('o')
+        page.wait("document.getElementById('photo-file')?.checkVisibility()")
+        rests(page)
+        there = camera(page)
+        marks = (0.7, 0.7), (0.55, 0.4), (0.2, 0.9), (0.5, 0.8), (0.35, 0.6)
+        places = [page.evaluate(f'''new Promise((done) => viewer.ask('pixel', {{ pane: 0, x: {x}, y: {y} }},
+            (answer) => answer.done < 1 || done(answer.place)))''') for x, y in marks]
+        assert all(places), places
+        page.evaluate('''(async () => {
+            const blob = await new Promise((done) => document.querySelector('.picture').toBlob(done));
+            const files = new DataTransfer();
+            files.items.add(new File([blob], 'photo.png', { type: 'image/png' }));
+            const box = document.getElementById('photo-file');
+            box.files = files.files;
+            box.dispatchEvent(new Event('change'));
+        })()''')
+        page.press('#moving button[data-name=fly]')
+        page.drag(300, 200, 330, 190)
+        page.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {there["target"]}[i])) > 1')
+        rests(page)
+        press_text(page, 'Set pairs')
+        for number, ((x, y), place) in enumerate(zip(marks, places)):
+            page.click(*on_stage(page, (x, y)))
+            page.wait("document.querySelector('#right').innerText.includes('same point')")
+            page.click(*on_stage(page, seen_at(camera(page), place, page)))
+            page.wait(f"document.querySelectorAll('.pairs li').length === {number + 1}")
+        press_text(page, 'Find the camera')
+        page.wait("document.querySelector('#right').innerText.includes('The camera was found')")
+        page.wait(f"Math.abs(viewer.camera.fov - {there['fov']}) > 1e-6") # it is another one, a little
+        found = camera(page)
+        assert far(found['eye'], there['eye']) < 1, (found, there)
+        assert far(direction(found), direction(there)) < 0.01, (found, there)
+        assert abs(found['fov'] - there['fov']) < 1, (found, there)
+        assert not page.errors, page.errors
+        page.close()
+
+
+if __name__ == '__main__':
+    run(Places)
