@@ -77,17 +77,25 @@ static size_t find_groups(const asker *a, const char *text, json_t *list) {
     return m.all - m.count;
 }
 
-/* Several roads make a street: the first one of a name stands for it. */
+static int by_name(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
+
+/* Several roads make a street. */
 static size_t find_streets(const asker *a, const char *text, json_t *list) {
     matches m = { 0 };
-    noc_street s, other;
-    for (size_t i = 0; noc_scene_get_street(world_scene(a->world), i, &s) && !ask_stopped(a); i++) {
-        bool first = rank_of(s.name, text) >= 0;
-        for (size_t k = 0; first && k < i && noc_scene_get_street(world_scene(a->world), k, &other); k++)
-            first = strcmp(s.name, other.name) != 0;
-        if (first)
-            offer(&m, s.name, i, text);
-    }
+    noc_street s;
+    size_t count = 0, kept = 0;
+    while (noc_scene_get_street(world_scene(a->world), count, &s))
+        count++;
+    const char **names = malloc((count + 1) * sizeof(*names));
+    for (size_t i = 0; names && i < count && !ask_stopped(a); i++)
+        if (noc_scene_get_street(world_scene(a->world), i, &s) && rank_of(s.name, text) >= 0)
+            names[kept++] = s.name;
+    if (names)
+        qsort(names, kept, sizeof(*names), by_name);
+    for (size_t i = 0; i < kept; i++)
+        if (!i || strcmp(names[i - 1], names[i]) != 0)
+            offer(&m, names[i], i, text);
+    free(names);
     for (size_t i = 0; i < m.count; i++)
         add_found(list, "street", m.best[i].name);
     return m.all - m.count;

@@ -65,13 +65,22 @@ static json_t *classes_of(const noc_influence_class *classes, size_t count) {
     return list;
 }
 
+/* Classes of a region's surfaces; of a place alone there are none to tell apart. Their count. */
+static size_t get_classes(noc_ranking *ranking, const json_t *about, noc_influence_class *classes) {
+    size_t count = 0;
+    bool region = json_object_get(about, "area") != NULL;
+    return region && !noc_ranking_get_classes(ranking, classes, NOC_CLASS_COUNT, &count) ? count : 0;
+}
+
 /* All rows that were found. */
-static char *csv_of(const asker *a, noc_ranking *ranking, const noc_influence_class *classes, size_t class_count) {
+static char *csv_of(const asker *a, noc_ranking *ranking, const json_t *about) {
+    noc_influence_class classes[NOC_CLASS_COUNT];
     noc_influence_sum sum;
     size_t found = 0;
     char *text = NULL;
     if (noc_ranking_get(ranking, NULL, 0, &found, &sum))
         return NULL;
+    size_t class_count = get_classes(ranking, about, classes);
     noc_influence_row *rows = calloc(sum.emitters + 1, sizeof(*rows));
     if (rows && !noc_ranking_get(ranking, rows, sum.emitters, &found, &sum))
         text =
@@ -92,13 +101,13 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     noc_influence_row rows[ASK_ROWS];
     noc_influence_class classes[NOC_CLASS_COUNT];
     noc_influence_sum sum;
-    size_t found, class_count = 0;
+    size_t found;
     if (noc_ranking_get(ranking, rows, ASK_ROWS, &found, &sum))
         return;
     json_t *m = ask_begin(q, done);
     json_object_update(m, about);
-    if (json_object_get(about, "area") && !noc_ranking_get_classes(ranking, classes, NOC_CLASS_COUNT, &class_count))
-        json_object_set_new(m, "classes", classes_of(classes, class_count));
+    if (json_object_get(about, "area"))
+        json_object_set_new(m, "classes", classes_of(classes, get_classes(ranking, about, classes)));
     json_object_set_new(m, "lux", ask_number(sum.lux.value));
     json_object_set_new(m, "lux_error", ask_number(sum.lux.error));
     json_object_set_new(m, "luminance", ask_number(sum.luminance.value));
@@ -106,7 +115,7 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
     if (done >= 1)
-        ask_keep(a, q->id, csv_of(a, ranking, classes, class_count));
+        ask_keep(a, q->id, csv_of(a, ranking, about));
     ask_send(a, q, m);
 }
 
@@ -122,6 +131,7 @@ static void rank(asker *a, const question *q, const noc_region *region, json_t *
     noc_ranking *ranking = noc_ranking_create(a->ask_view, region, &params);
     noc_status status = ranking ? NOC_OK : NOC_ERR_MEMORY;
     double spent = 0, next = FIRST_SECONDS;
+    bool told = false;
     while (!status && spent < MOST_SECONDS) {
         status = noc_ranking_refine(ranking, &(noc_ranking_target){ .seconds = next, .error = GOOD },
                                     &(noc_progress){ goes_on, a });
@@ -131,12 +141,13 @@ static void rank(asker *a, const question *q, const noc_region *region, json_t *
             break;
         bool last = spent >= MOST_SECONDS || is_good(ranking);
         tell(a, q, ranking, about, last ? 1 : spent / MOST_SECONDS);
+        told = true;
         if (last)
             break;
     }
-    if (status == NOC_ERR_CANCELLED) /* who has enough may save what there is */
-        ask_keep(a, q->id, csv_of(a, ranking, NULL, 0));
-    else if (status)
+    if (status == NOC_ERR_CANCELLED && told) /* who has enough may save what there is */
+        ask_keep(a, q->id, csv_of(a, ranking, about));
+    else if (status && status != NOC_ERR_CANCELLED)
         ask_refuse(a, q, *a->wrong ? a->wrong : noc_status_text(status));
     noc_ranking_destroy(ranking);
 }
