@@ -80,8 +80,9 @@ def on_stage(page, at):
 
 
 def rests(page, frames=2):
-    """Until the newest picture is of a camera that rests, and of that many frames."""
-    page.wait(f"Number(document.querySelector('.picture').dataset.frames) >= {frames}")
+    """Until the newest picture answers all input, is of a camera that rests, and of that many frames."""
+    page.wait(f"""(({{ input, frames }}) => Number(input) >= viewer.sent && Number(frames) >= {frames})"""
+              """(document.querySelector('.picture').dataset)""")
 
 
 def choose(page, name, value):

@@ -185,6 +185,7 @@ export class Panes {
         bitmap.close();
         canvas.dataset.n = picture.n;
         canvas.dataset.frames = picture.frames;
+        canvas.dataset.input = picture.input;
         this.app.shown(picture.input);
         pane.size = [picture.width, picture.height];
         this.draw();
