@@ -39,6 +39,7 @@ typedef struct noc_emitter {
     int instance;       /* vehicles: whose it is; else -1 */
     double centre[3];   /* of the first light, local metres */
     double lumens;      /* of all its lights */
+    double kelvin;      /* of its first light, by noc_rgb_kelvin; NaN: no black body's colour, or dark */
     bool inferred;      /* a lamp that a rule has placed */
 } noc_emitter;
 

@@ -2,6 +2,7 @@
 #include "ask/ask.h"
 
 #include <math.h>
+#include <unistd.h>
 
 enum { PLACES = 20000, MOST_CELLS = 4000000 }; /* points that a region is made of, about; cells that are looked at */
 
@@ -152,6 +153,10 @@ noc_status ask_polygon(const asked *a) {
     if (!wkt && (!a->params->files || !*a->text))
         return noc_error(a->log, NOC_ERR_ARGUMENT, "region: polygon: needs %sWKT, POLYGON((X Y, X Y, ...))",
                          a->params->files ? "a file, or " : "");
+    if (!wkt && strspn(a->text, "0123456789+-.eE, ") == strlen(a->text) && access(a->text, F_OK))
+        return noc_error(a->log, NOC_ERR_ARGUMENT,
+                         "region: polygon:%s is no file; corners are written as WKT, POLYGON((X Y, X Y, ...))",
+                         noc_text_clean((char[120]){ 0 }, 120, a->text));
     noc_status status = wkt ? noc_rings_parse(a->text, &rings, a->log) : noc_rings_read(a->text, &rings, a->log);
     if (status != NOC_OK)
         return status;

@@ -32,13 +32,10 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
     const noc_emitter *e = &row->emitter;
     const noc_report_lamp *lamp = noc_report_find_lamp(report, e->light);
     noc_scene_info info;
-    noc_light_info light;
-    double at[3] = { e->centre[0], e->centre[1], e->centre[2] }, kelvin = NAN;
+    double at[3] = { e->centre[0], e->centre[1], e->centre[2] };
     noc_scene_get_info(scene, &info);
     if (*info.given_crs && noc_scene_from_local(scene, NULL, at))
         at[0] = at[1] = at[2] = NAN;
-    if (!noc_scene_get_light(scene, e->light, &light) && !light.removed)
-        kelvin = noc_rgb_kelvin(light.light.emission);
     const double numbers[] = { row->lux.value, row->lux.error, row->share.value, row->share.error };
     fprintf(out, "%zu", rank);
     csv_text(out, e->name);
@@ -50,7 +47,7 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
         csv_number(out, at[k], 3);
     csv_number(out, row->distance, 2);
     csv_number(out, e->lumens, -1);
-    csv_number(out, kelvin, 0);
+    csv_number(out, e->kelvin, 0);
     csv_text(out, e->inferred ? "inferred" : lamp ? "mapped" : "");
     csv_text(out, lamp ? lamp->street : "");
     csv_text(out, lamp ? lamp->file : "");

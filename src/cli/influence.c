@@ -7,7 +7,7 @@
 #define A influence_args
 static const noc_option own_options[] = {
     { "region", "Influence", NOC_OPTION_TEXT, offsetof(A, region), 0, 0, NULL, "REGION",
-      "what is asked about: point:X,Y, pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE" },
+      "what is asked about: point:X,Y, pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE|WKT" },
     { "class", "Influence", NOC_OPTION_TEXT, offsetof(A, classes), 0, 0, NULL, "NAMES",
       "of an object: surfaces of these classes alone, such as wall,roof" },
     { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",

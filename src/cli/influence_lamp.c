@@ -64,7 +64,7 @@ static void print_tags(const char *tags) {
     }
 }
 
-static void print_lamp(const influence_job *job, const noc_reach *r, const noc_report_lamp *lamp, double kelvin) {
+static void print_lamp(const influence_job *job, const noc_reach *r, const noc_report_lamp *lamp) {
     double at[3];
     char a[64], b[32];
     to_crs(job, r->emitter.centre, at);
@@ -74,8 +74,8 @@ static void print_lamp(const influence_job *job, const noc_reach *r, const noc_r
     print_text("at", a);
     printf("%-10s%s lm of %s", "flux", cli_number(b, r->emitter.lumens),
            noc_text_many(a, r->emitter.light_count, "light"));
-    if (isfinite(kelvin))
-        printf(", %.0f K", kelvin);
+    if (isfinite(r->emitter.kelvin))
+        printf(", %.0f K", r->emitter.kelvin);
     if (lamp && isfinite(lamp->watts))
         printf(", %g W", lamp->watts);
     putchar('\n');
@@ -121,7 +121,7 @@ static void json_value(const char *name, double v) {
     cli_json_number(stdout, v);
 }
 
-static void print_json(const influence_job *job, const noc_reach *r, const noc_report_lamp *lamp, double kelvin,
+static void print_json(const influence_job *job, const noc_reach *r, const noc_report_lamp *lamp,
                        const noc_reach_object *objects, size_t count) {
     printf("{\"nocturne\": \"%s\", \"lamp\": ", noc_version());
     cli_json_text(stdout, r->emitter.name);
@@ -129,7 +129,7 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
            r->emitter.light, r->emitter.light_count);
     json_place(job, "at", r->emitter.centre);
     json_value("lumens", r->emitter.lumens);
-    json_value("kelvin", kelvin);
+    json_value("kelvin", r->emitter.kelvin);
     json_value("watts", lamp ? lamp->watts : NAN);
     json_value("height", lamp ? lamp->height : NAN);
     const char *const texts[][2] = { { "profile", lamp ? lamp->profile : "" },
@@ -160,18 +160,15 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
 noc_status influence_tell_lamp(influence_job *job) {
     size_t light = 0, found = 0, top = (size_t)job->args->top;
     noc_reach reach;
-    noc_light_info info;
     noc_status status = find(job, &light);
     noc_reach_object *objects = cli_alloc(top * sizeof(*objects));
     status = status ? status : noc_view_reach(job->view, light, NULL, &reach, objects, top, &found);
-    status = status ? status : noc_scene_get_light(job->scene, light, &info);
     if (!status) {
         const noc_report_lamp *lamp = noc_report_find_lamp(job->report, reach.emitter.light);
-        double kelvin = noc_rgb_kelvin(info.light.emission);
         if (job->args->json) {
-            print_json(job, &reach, lamp, kelvin, objects, found);
+            print_json(job, &reach, lamp, objects, found);
         } else {
-            print_lamp(job, &reach, lamp, kelvin);
+            print_lamp(job, &reach, lamp);
             print_reach(job, &reach, objects, found);
         }
     }

@@ -9,18 +9,14 @@
 /* What is told of an emitter beside its light: of lamps, by the report. */
 typedef struct told {
     const noc_report_lamp *lamp; /* NULL: nothing */
-    double kelvin;               /* NaN: no black body's colour, or it is dark */
     double at[3];                /* in the scene's CRS, or local metres */
 } told;
 
 static told tell(const influence_job *job, const noc_influence_row *row) {
-    told t = { noc_report_find_lamp(job->report, row->emitter.light), NAN, { 0 } };
-    noc_light_info light;
+    told t = { noc_report_find_lamp(job->report, row->emitter.light), { 0 } };
     memcpy(t.at, row->emitter.centre, sizeof(t.at));
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, t.at))
         t.at[0] = t.at[1] = t.at[2] = NAN;
-    if (!noc_scene_get_light(job->scene, row->emitter.light, &light) && !light.removed)
-        t.kelvin = noc_rgb_kelvin(light.light.emission);
     return t;
 }
 
@@ -57,8 +53,8 @@ static void print_name(const noc_influence_row *row, const told *t) {
 static void print_row(const influence_job *job, const noc_influence_row *row) {
     told t = tell(job, row);
     char kelvin[16] = "-";
-    if (isfinite(t.kelvin))
-        snprintf(kelvin, sizeof(kelvin), "%.0f", t.kelvin);
+    if (isfinite(row->emitter.kelvin))
+        snprintf(kelvin, sizeof(kelvin), "%.0f", row->emitter.kelvin);
     print_estimate(row->lux, false);
     print_estimate(row->share, true);
     printf("  %-8s %8.1f %8.0f %6s", noc_emitter_kind_name(row->emitter.kind), row->distance, row->emitter.lumens,
@@ -174,7 +170,7 @@ static void json_row(const influence_job *job, const noc_influence_row *row) {
     json_number("z", t.at[2]);
     json_number("distance", row->distance);
     json_number("lumens", e->lumens);
-    json_number("kelvin", t.kelvin);
+    json_number("kelvin", e->kelvin);
     json_text("placed", e->inferred ? "inferred" : t.lamp ? "mapped" : "");
     json_text("street", t.lamp ? t.lamp->street : "");
     json_text("file", t.lamp ? t.lamp->file : "");

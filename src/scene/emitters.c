@@ -179,13 +179,15 @@ void noc_emitter_describe(const noc_scene *s, const noc_emitters *e, uint32_t i,
                           .light = of->first,
                           .light_count = of->count,
                           .instance = -1,
-                          .lumens = of->lumens };
+                          .lumens = of->lumens,
+                          .kelvin = NAN };
     if (!s)
         return;
     const noc_light_record *r = &s->lights.data[of->first];
     const char *name = s->light_names.data[of->first];
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
     out->name = name ? name : "";
+    out->kelvin = noc_rgb_kelvin(r->e);
     out->inferred = (r->flags & NOC_LIGHT_INFERRED) != 0;
     if (of->instance != UINT32_MAX) {
         const char *model = s->models.data[s->instances.data[of->instance].model - 1].name;

@@ -191,6 +191,7 @@ static void wrong_ones_say_what_is_wrong(void **state) {
         { "street:Main Stret", "is it \"Main Street\"?" },
         { "street:zzz", "among 1; the first is \"Main Street\"" },
         { "polygon:/no/such/file", "/no/such/file" },
+        { "polygon:0,0,1,1", "0,0,1,1 is no file; corners are written as WKT" },
         { "polygon:POLYGON((0 0, 1 1))", "less than three" },
         { "polygon:POLYGON((0 0, 1 1, 2 2", "does not end" },
         { "polygon:POLYGON((0 0, 1 1, 2 0)", "do not match" },

@@ -122,6 +122,8 @@ static void check_panes(const noc_scene *s) {
         assert_true(e[i].light_count == 3 || e[i].light_count == 2);
         assert_true((e[i].light == e[0].light) == (e[i].light_count == e[0].light_count));
         lumens += e[i].lumens / (double)e[i].light_count;
+        assert_true(e[i].kelvin > 2000 && e[i].kelvin < 7000);
+        assert_true(e[i].kelvin == noc_rgb_kelvin(s->lights.data[e[i].light].e));
     }
     assert_int_equal(of_three, 3);
     double all = 0;
