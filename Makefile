@@ -51,11 +51,11 @@ check: deps-check build/build.ninja
 	@$(NINJA) -C build
 	@tools/run-tests.sh build
 
-# -O1 and line numbers alone: most of its time goes into compiling.
+# -O1 and line numbers alone: most of its time goes into compiling. TURN=N: a share of the slow tests, after `make check`.
 asan: deps-check
 	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Dwerror=$(WERROR) -Doptimization=1 -Ddebug=false -Dc_args=-g1 -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-asan
-	@tools/run-tests.sh build-asan --timeout-multiplier 4
+	@tools/run-tests.sh build-asan --timeout-multiplier 4 $(if $(TURN),$$(tools/turn-tests.py build-asan build $(TURN)))
 
 # The pool, the log, frames, the tables that they share, and what loads a scene.
 THREADED = base-test_base base-test_api backend-test_lists backend-test_many light-test_learned render-test_light_stats \
