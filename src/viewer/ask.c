@@ -154,14 +154,15 @@ void asker_destroy(asker *a) {
 }
 
 void asker_ask(asker *a, const wire_ask *ask, const ask_view *view) {
-    question *q = calloc(1, sizeof(*q)), *gone = NULL;
+    const char *text = ask->object ? ask->object : ask->street ? ask->street : ask->text ? ask->text : "";
+    size_t size = strlen(text) + 1;
+    question *q = calloc(1, sizeof(*q) + size), *gone = NULL;
     if (!q)
         return;
     q->id = ask->id;
     q->ask = *ask;
     q->view = *view;
-    const char *text = ask->object ? ask->object : ask->street ? ask->street : ask->text;
-    snprintf(q->text, sizeof(q->text), "%s", text ? text : "");
+    memcpy(q->text, text, size);
     q->ask.object = ask->object ? q->text : NULL;
     q->ask.street = ask->street ? q->text : NULL;
     q->ask.text = ask->text ? q->text : NULL;

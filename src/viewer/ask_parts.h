@@ -12,8 +12,8 @@ enum { ASK_WAITING = 8, ASK_KEPT = 8, ASK_ROWS = 40 };
 typedef struct question {
     uint32_t id;
     wire_ask ask;
-    char text[512]; /* what ask.object, street or text points at */
     ask_view view;
+    char text[]; /* what ask.object, street or text points at */
 } question;
 
 struct asker {

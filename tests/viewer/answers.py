@@ -1,10 +1,12 @@
 """What `nocturne view` answers: who lights a place, names, outlines, cards of lamps."""
+import json
 import struct
 import sys
+import tempfile
 
 import hand
 from hand import enter, near, said
-from wire import Picture
+from wire import Picture, Program
 
 
 def ask(c, what, timeout=180, **values):
@@ -91,6 +93,27 @@ def test_names_are_found(p):
     assert 0 < street["area"] and (whole is None or street["area"] < 0.5 * whole["area"]), street["area"]
     assert "refused" in ask(c, "region", id=14, street="no such street")
     c.close()
+
+
+def test_long_names_are_whole(p):
+    """A street is told from another one however late their names differ."""
+    names = ["a" * 1000 + end for end in "bc"]
+    roads = [{"type": "Feature", "properties": {"highway": "residential", "name": name},
+              "geometry": {"type": "LineString", "coordinates": [[11.42, y], [11.421, y]]}}
+             for name, y in zip(names, (48.76, 48.761))]
+    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
+        json.dump({"type": "FeatureCollection", "features": roads}, file)
+        file.flush()
+        q = Program(file.name, "--map-surfaces", "--threads", "2")
+        try:
+            c = enter(q)
+            assert sorted(one["name"] for one in ask(c, "find", id=1, text="aaa")["found"]) == names
+            places = [ask(c, "name", id=2, street=name)["place"] for name in names]
+            assert abs(places[1][1] - places[0][1]) > 50, places
+            assert ask(c, "region", id=3, street=names[1])["area"] > 10
+            c.close()
+        finally:
+            q.end()
 
 
 def test_regions_have_outlines(p):

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
 """The page's map, search, bookmarks and photograph."""
+import json
+
+import wire
 from leaf import Opened, blur, camera, direction, far, on_stage, opened, press_text, rests, run, seen_at, state
 
 
@@ -34,6 +37,43 @@ class Places(Opened):
         page.key('m')
         page.wait(f'{on_map} <= {before} + 5')
         page.key('m')
+
+    def test_anybodys_links_do_no_harm(self):
+        """What no view has is left out of links and of what the browser kept: nothing throws, no connection breaks."""
+        page = self.page
+        page.evaluate("(globalThis.broken = 0, viewer.connection.on('closed', () => broken++), 0)")
+        none, long, nowhere = {'toString': 1, 'valueOf': 1}, 'x' * 5000, [0, 0, 5]
+        fine = {'eye': [0, 0, 50], 'target': [1, 2, 3], 'fov': 40}
+        cameras = [5, 'x', {}, {**fine, 'eye': 'abc'}, {**fine, 'eye': [1e30, 0, 0]}, {**fine, 'fov': 1e9},
+                   {**fine, 'eye': [None, 'a', {}]}, {'eye': nowhere, 'target': nowhere, 'fov': 50}]
+        views = [{'panes': one} for one in (5, 'x', {}, [none, 7, None], [{}] * 200, [{'preset': long}],
+                                            [{'show': none, 'seed': [1]}])]
+        views += [{'world': one} for one in (5, {'hour': none}, {'hour': long}, {'wet': [[]]})]
+        views += [{'camera': one} for one in cameras] + [{'layout': one} for one in ({}, 'x', none)]
+        views += [{'navigate': one} for one in ('x', {'mode': 'x'}, {'mode': 'fly', 'speed': none, 't': 'x'})]
+        views += [{'bookmarks': one} for one in (5, {}, [{**one, 'name': 'n'} for one in cameras[2:]], [fine, None])]
+        views += [{'bookmarks': [{**fine, 'name': long}, {**fine, 'name': '\0\ud800'}], 'camera': fine}]
+        for view in [5, [], 'x'] + [{'v': 1, **one} for one in views]:
+            page.evaluate(f"(location.hash = `token={wire.TOKEN}&view=` + encodeURIComponent("
+                          f"{json.dumps(json.dumps(view))}), 0)")
+            self.machine.listen(0.1)
+        page.wait('Math.abs(viewer.camera.eye[2] - 50) < 1e-3')
+        names = page.evaluate("[...document.querySelectorAll('.bookmarks .name')].map((one) => one.textContent)")
+        assert names == ['x' * 60, 'place'], names
+        assert page.evaluate('broken') == 0 and not page.errors, page.errors
+        assert state(page, 'layout') == 'single' and state(page, 'navigate.mode') == 'fly'
+        page.key('p')
+        page.evaluate(f"(viewer.set('show-range', '{long}'), viewer.ask('name', {{ street: '{long}' }}, "
+                      "({ refused }) => (globalThis.told = refused)), 0)")
+        assert 'too long' in page.wait('globalThis.told')
+        kept = json.dumps({'hash': f'#token={wire.TOKEN}', 'view': {'panes': 5, 'camera': 'x'}})
+        page.evaluate(f"(location.hash = 'token={wire.TOKEN}', localStorage.setItem(`nocturne bookmarks "
+                      f"${{viewer.scene.name}}`, '{{}}'), addEventListener('pagehide', () => "
+                      f"sessionStorage.setItem('nocturne view', {json.dumps(kept)})), 0)")
+        page.call('Page.reload')
+        self.machine.listen(0.5)
+        page.wait("globalThis.viewer?.state && document.querySelector('.picture').dataset.n", 60)
+        assert not page.errors, page.errors
 
     def test_finds_by_name(self):
         page = self.page

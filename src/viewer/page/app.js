@@ -1,5 +1,6 @@
 // app.js: what the page knows: the schema, the state that the program last told, figures of the newest pictures. All
 // panels read it here and hear of changes: welcome, state, stats, highlight, editing, picture.
+import { fits } from './connection.js';
 import { Emitter } from './dom.js';
 
 export class App extends Emitter {
@@ -42,11 +43,16 @@ export class App extends Emitter {
     }
 
     set(name, value, pane = this.editing) {
-        this.connection.send('set', { pane, name, value: String(value) });
+        this.#say('set', { pane, name, value: String(value) });
     }
 
     setWorld(name, value) {
-        this.connection.send('world', { name, value: String(value) });
+        this.#say('world', { name, value: String(value) });
+    }
+
+    #say(t, values) {
+        if (fits(values.value)) this.connection.send(t, values);
+        else this.emit('note', 'error', `${values.name}: that text is too long.`);
     }
 
     edit(pane) {
@@ -116,7 +122,9 @@ export class App extends Emitter {
     ask(what, values, progress) {
         const id = ++this.#asked;
         this.#questions.set(id, progress);
-        this.connection.send('ask', { id, what, ...values });
+        if (Object.values(values).every((one) => typeof one !== 'string' || fits(one)))
+            this.connection.send('ask', { id, what, ...values });
+        else queueMicrotask(() => this.#answer({ id, done: 1, refused: 'Its name is too long to be asked about.' }));
         return id;
     }
 

@@ -1,6 +1,22 @@
 // camera.js: where a place of the scene is in the picture, and cameras between cameras. Metres, z up, fov in degrees
 // from the lower to the upper edge.
 
+const FAR = 1e6; // m, that a camera may be away
+
+// Is it a camera that the program takes?
+export function isCamera(one) {
+    const near = (x) => Math.abs(x) <= FAR && typeof x === 'number';
+    const place = (at) => Array.isArray(at) && at.length === 3 && at.every(near);
+    return (
+        place(one?.eye) &&
+        place(one.target) &&
+        Math.hypot(...minus(one.target, one.eye)) >= 1e-3 &&
+        typeof one.fov === 'number' &&
+        one.fov >= 1 &&
+        one.fov <= 170
+    );
+}
+
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

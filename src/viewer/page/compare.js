@@ -1,7 +1,7 @@
 // compare.js: layouts: one picture, two beside a divider, all methods, a difference from the reference.
 import { el, Choice, clamp } from './dom.js';
 
-const LAYOUTS = [
+export const LAYOUTS = [
     ['single', 'One', 'one picture'],
     ['divider', 'A|B', 'two looks, A and B, and a divider between them'],
     ['methods', 'Methods', 'all methods beside each other'],

@@ -8,6 +8,12 @@ export const PICTURE = 1,
     FILE = 2,
     LIGHTS = 3;
 
+const LONGEST_TEXT = 4096; // bytes
+export const fits = (text) => new TextEncoder().encode(text).length <= LONGEST_TEXT;
+
+// Texts as JSON is read: no half of a character, and no 0.
+const plain = (key, value) => (typeof value === 'string' ? value.replaceAll(/[\0\p{Cs}]/gu, '') : value);
+
 // The head of a binary message, and what follows it.
 export function parse(buffer) {
     if (buffer.byteLength < HEAD) return null;
@@ -62,7 +68,7 @@ export class Connection extends Emitter {
     }
 
     send(t, values = {}) {
-        if (this.up) this.#socket.send(JSON.stringify({ t, ...values }));
+        if (this.up) this.#socket.send(JSON.stringify({ ...values, t }, plain));
     }
 
     #message(data) {

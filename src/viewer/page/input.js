@@ -2,6 +2,12 @@
 // happens. Where the camera may go, the program decides.
 import { Emitter, clamp, typing } from './dom.js';
 
+// Ways of moving: name, what is shown, what is told.
+export const MOVING = [
+    ['orbit', 'Orbit', 'turn about what is looked at'],
+    ['fly', 'Fly', 'go anywhere'],
+    ['walk', 'Walk', 'at eye height, on the ground, not through walls'],
+];
 const HELD = {
     KeyW: 'forward',
     ArrowUp: 'forward',

@@ -1,5 +1,11 @@
 // link.js: the view as text behind # of the link, and back. What is the default is left out.
 import { same } from './controls.js';
+import { isCamera } from './camera.js';
+import { LAYOUTS } from './compare.js';
+import { fits } from './connection.js';
+import { MOVING } from './input.js';
+
+const MOST_PANES = 6; // of a client
 
 function changed(options, values = {}) {
     const found = {};
@@ -40,6 +46,27 @@ export function read(hash) {
     }
 }
 
+// Anybody can write a link, and other pages of the host can write what the browser keeps: what no view has is left out.
+function sane(view, schema) {
+    const of = (value) => (value !== null && typeof value === 'object' ? value : {});
+    const known = (choices, value) => choices.some(([name]) => name === value);
+    const plain = (value) => ['string', 'number', 'boolean'].includes(typeof value) && fits(String(value));
+    const values = (options, from) => {
+        const own = options.filter(({ name }) => Object.hasOwn(of(from), name) && plain(from[name]));
+        return Object.fromEntries(own.map(({ name }) => [name, from[name]]));
+    };
+    const { camera, navigate, layout, panes, world } = of(view);
+    const { mode, speed } = of(navigate);
+    const fast = typeof speed === 'number' && speed >= 0 && speed <= 1000;
+    return {
+        camera: isCamera(camera) ? camera : null,
+        navigate: known(MOVING, mode) ? { mode, ...(fast ? { speed } : {}) } : null,
+        layout: known(LAYOUTS, layout) ? layout : null,
+        panes: (Array.isArray(panes) ? panes : []).slice(0, MOST_PANES).map((from) => values(schema.look, from)),
+        world: values(schema.world, world),
+    };
+}
+
 // The mode comes last: a look is refused whose method cannot show it. The ends of its bar come behind its scale.
 const MODE = ['show', 'show-scale', 'show-range', 'isolines'];
 
@@ -62,15 +89,16 @@ function restoreLook(app, pane, own) {
 }
 
 // world: the settings of all clients, too; a link restores them, a reconnected client does not.
-export function restore(app, view, world) {
+export function restore(app, told, world) {
     const { connection, schema } = app;
+    const view = sane(told, schema);
     if (view.layout && view.layout !== app.state?.layout) connection.send('layout', { name: view.layout });
     if (view.camera) app.goTo(view.camera);
     if (view.navigate) connection.send('navigate', view.navigate); // there: here may be no place to stand
-    (view.panes ?? []).forEach((values, pane) => restoreLook(app, pane, values ?? {}));
+    view.panes.forEach((values, pane) => restoreLook(app, pane, values));
     if (!world) return;
     for (const option of schema.world) {
-        const value = view.world?.[option.name] ?? option.value;
+        const value = view.world[option.name] ?? option.value;
         const now = app.state?.world?.values?.[option.name];
         if (String(value) !== String(now) && !same({ ...option, value }, now)) app.setWorld(option.name, value);
     }

@@ -2,7 +2,7 @@
 import { Connection } from './connection.js';
 import { App } from './app.js';
 import { Panes } from './panes.js';
-import { Input } from './input.js';
+import { Input, MOVING } from './input.js';
 import { Drawers, Settings } from './panels.js';
 import { Modes } from './modes.js';
 import { Legend } from './legend.js';
@@ -37,11 +37,6 @@ const places = new Places(app, drawers, new Find(app, drawers, ask));
 const out = new Out(app, drawers, places, $('text'));
 const layouts = new Layouts($('layouts'), app, panes);
 
-const MOVING = [
-    ['orbit', 'Orbit', 'turn about what is looked at'],
-    ['fly', 'Fly', 'go anywhere'],
-    ['walk', 'Walk', 'at eye height, on the ground, not through walls'],
-];
 const moving = new Choice($('moving'), (mode) => connection.send('navigate', { mode }));
 moving.fill(MOVING.map(([name, text, title]) => ({ name, text, title })));
 app.on('state', (state) => moving.set(state.navigate?.mode));

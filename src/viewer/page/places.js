@@ -1,8 +1,9 @@
 // places.js: cameras to go to: those of the program, bookmarks of this browser, and a path along them.
 import { el, button } from './dom.js';
-import { along } from './camera.js';
+import { along, isCamera } from './camera.js';
 
 const MOST = 64; // bookmarks: as many as a recipe is told
+const LONGEST = 60; // characters of a name
 
 export class Places {
     bookmarks = []; // { name, eye, target, fov }
@@ -17,7 +18,7 @@ export class Places {
         this.name = el('input', {
             type: 'text',
             placeholder: 'name',
-            maxlength: 60,
+            maxlength: LONGEST,
             'aria-label': 'Name of the bookmark',
         });
         const add = el(
@@ -73,10 +74,11 @@ export class Places {
     }
 
     take(bookmarks) {
-        const whole = (one) =>
-            typeof one?.name === 'string' && one.eye?.length === 3 && one.target?.length === 3 && one.fov > 0;
-        for (const one of (bookmarks ?? []).filter(whole).slice(0, MOST))
-            if (!this.bookmarks.some((own) => own.name === one.name)) this.bookmarks.push(one);
+        const whole = (one) => typeof one?.name === 'string' && isCamera(one);
+        const name = (text) => text.replaceAll(/[\p{Cc}\p{Cs}]/gu, '').slice(0, LONGEST) || 'place';
+        for (const one of (Array.isArray(bookmarks) ? bookmarks : []).filter(whole))
+            if (this.bookmarks.length < MOST && !this.bookmarks.some((own) => own.name === name(one.name)))
+                this.bookmarks.push({ name: name(one.name), eye: one.eye, target: one.target, fov: one.fov });
         this.#told();
     }
 
@@ -140,7 +142,7 @@ export class Places {
                 const box = el('input', {
                     type: 'text',
                     value: one.name,
-                    maxlength: 60,
+                    maxlength: LONGEST,
                     'aria-label': `New name of ${one.name}`,
                 });
                 const done = (keep) => {
