@@ -26,6 +26,7 @@ import zlib
 STOREY = 2.9        # m
 CELL = 8.0          # m, of the grid that roofs are found by
 LAND = 1500.0       # m, of ground around the model
+STREET = 40.0       # m, between copies of it
 PANE = .01          # m, of windows before their wall: no wall behind them that a pixel could look at, past their edge
 NESTING = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2, "CompositeSolid": 2}
 BUILDINGS = ("Building", "BuildingPart", "BuildingInstallation")
@@ -368,10 +369,11 @@ class Writer:
 
     def __init__(self, file):
         self.file, self.total, self.known, self.polygons = file, 0, {}, 0
+        self.shift, self.prefix = (0.0, 0.0), ""
 
     def begin(self, name):
         self.known = {}
-        self.file.write("o %s\n" % name)
+        self.file.write("o %s%s\n" % (self.prefix, name))
 
     def material(self, name):
         self.file.write("usemtl %s\n" % name)
@@ -379,7 +381,7 @@ class Writer:
     def polygon(self, ring):
         indices = []
         for x, y, z in ring:
-            text = "v %.3f %.3f %.3f\n" % (x, z, -y)
+            text = "v %.3f %.3f %.3f\n" % (x + self.shift[0], z, -y - self.shift[1])
             if text not in self.known:
                 self.file.write(text)
                 self.total += 1
@@ -398,16 +400,10 @@ def write_materials(file, materials):
         file.write("\n")
 
 
-def write_city(file, library, model, night):
-    out = Writer(file)
-    file.write("# a city at night, in metres, y up; Ke in cd/m2\nmtllib %s\n" % library)
-    out.begin("ground")
-    out.material("ground")
-    x, y = (h + LAND for h in model.half)
-    out.polygon([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)])
+def write_copy(out, model, night, paint):
     for k, (walls, roofs) in enumerate(model.buildings):
         out.begin("building%d" % k)
-        out.material("wall%d" % int(night.random.random() * len(PAINT)))
+        out.material("wall%d" % paint[k])
         for wall in walls:
             out.polygon(wall.ring)
         out.material("roof")
@@ -418,6 +414,23 @@ def write_city(file, library, model, night):
         out.material(name)
         for quad in night.quads[name]:
             out.polygon(quad)
+
+
+def write_city(file, library, model, night, copies):
+    """Copies stand side by side on one ground, a square of them."""
+    out = Writer(file)
+    file.write("# a city at night, in metres, y up; Ke in cd/m2\nmtllib %s\n" % library)
+    out.begin("ground")
+    out.material("ground")
+    side = math.ceil(math.sqrt(copies))
+    step = tuple(2 * h + STREET for h in model.half)
+    x, y = (h + LAND for h in model.half)
+    far_x, far_y = x + (side - 1) * step[0], y + (math.ceil(copies / side) - 1) * step[1]
+    out.polygon([(-x, -y, 0), (far_x, -y, 0), (far_x, far_y, 0), (-x, far_y, 0)])
+    paint = [int(night.random.random() * len(PAINT)) for _ in model.buildings]
+    for k in range(copies):
+        out.shift, out.prefix = (k % side * step[0], k // side * step[1]), "copy%d_" % k if k else ""
+        write_copy(out, model, night, paint)
     return out.polygons
 
 
@@ -428,6 +441,7 @@ def main():
     parser.add_argument("--quads", type=int, default=30000, help="emissive quads, if there are windows enough (30000)")
     parser.add_argument("--lamps", type=int, default=3000, help="street lamps, if there is room (3000)")
     parser.add_argument("--spacing", type=float, default=8, help="least distance of lamps, m (8)")
+    parser.add_argument("--copies", type=int, default=1, help="of the city, side by side (1)")
     parser.add_argument("--seed", type=int, default=1, help="another number, other lights (1)")
     args = parser.parse_args()
     model = Model(args.models)
@@ -438,8 +452,9 @@ def main():
     with open(stem + ".mtl", "w", encoding="ascii") as f:
         write_materials(f, night.materials)
     with open(args.output, "w", encoding="ascii") as f:
-        polygons = write_city(f, os.path.basename(stem) + ".mtl", model, night)
-    print("%d buildings, %d polygons, %d emissive quads" % (len(model.buildings), polygons, night.emissive()))
+        polygons = write_city(f, os.path.basename(stem) + ".mtl", model, night, args.copies)
+    print("%d buildings, %d polygons, %d emissive quads" %
+          (args.copies * len(model.buildings), polygons, args.copies * night.emissive()))
     for what, count in sorted((night.counts + model.counts).items()): # those above 0
         print("%8d %s" % (count, what))
 

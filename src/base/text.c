@@ -41,11 +41,41 @@ int noc_fprintf(FILE *file, const char *fmt, ...) {
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
+/* Plain decimals with up to 15 digits convert exactly with one division; the rest goes to strtod. Returns where the
+ * number ends, NULL where it is none of those. end: NULL where a 0 is behind the text. */
+static const char *scan_plain(const char *s, const char *end, double *out) {
+    static const double pow10[] = {
+        1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15
+    };
+    enum { MOST_DIGITS = 15 };
+    bool negative = s != end && *s == '-';
+    s += negative || (s != end && *s == '+');
+    uint64_t v = 0;
+    const char *first = s, *dot = NULL;
+    for (; s != end; s++) {
+        unsigned digit = (unsigned)(unsigned char)*s - '0';
+        if (digit <= 9 && s - first <= MOST_DIGITS)
+            v = v * 10 + digit;
+        else if (*s == '.' && !dot)
+            dot = s;
+        else
+            break;
+    }
+    ptrdiff_t digits = s - first - (dot != NULL);
+    if (digits < 1 || digits > MOST_DIGITS)
+        return NULL;
+    double d = (double)v / pow10[dot ? s - dot - 1 : 0];
+    *out = negative ? -d : d;
+    return s;
+}
+
 const char *noc_scan_double(const char *s, const char *end, double *out) {
     while (s < end && is_blank(*s))
         s++;
-    const char *stop = s;
-    while (stop < end && !is_blank(*stop))
+    const char *stop = scan_plain(s, end, out);
+    if (stop && (stop == end || is_blank(*stop)))
+        return stop;
+    for (stop = s; stop < end && !is_blank(*stop);)
         stop++;
     char text[64];
     size_t n = (size_t)(stop - s);
@@ -56,42 +86,13 @@ const char *noc_scan_double(const char *s, const char *end, double *out) {
     return noc_parse_double(text, out) ? stop : NULL;
 }
 
-/* Plain decimals with up to 15 digits convert exactly with one division; the rest goes to strtod. */
-static bool parse_plain(const char *s, double *out) {
-    static const double pow10[] = {
-        1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15
-    };
-    bool negative = *s == '-';
-    if (*s == '-' || *s == '+')
-        s++;
-    uint64_t v = 0;
-    int digits = 0, decimals = 0;
-    bool dot = false;
-    for (; *s; s++) {
-        if (*s == '.' && !dot) {
-            dot = true;
-        } else if (*s >= '0' && *s <= '9') {
-            if (++digits > 15)
-                return false;
-            v = v * 10 + (uint64_t)(*s - '0');
-            decimals += dot;
-        } else {
-            return false;
-        }
-    }
-    if (!digits)
-        return false;
-    double d = (double)v / pow10[decimals];
-    *out = negative ? -d : d;
-    return true;
-}
-
 bool noc_parse_double(const char *s, double *out) {
     if (!s)
         return false;
     while (is_blank(*s))
         s++;
-    if (parse_plain(s, out))
+    const char *stop = scan_plain(s, NULL, out);
+    if (stop && !*stop)
         return true;
     if (!*s || *s == 'n' || *s == 'N' || strpbrk(s, "xX")) /* no hexadecimal, no "nan" */
         return false;

@@ -2,6 +2,44 @@
 #include "base/base.h"
 #include <stdatomic.h>
 
+/* Bit for bit what strtod says, whichever way the number goes. */
+static void test_numbers_of_all_lengths(void **state) {
+    static const char *const ends[] = { "", ".", "e-7" };
+    uint64_t seed = 1;
+    for (int i = 0; i < 200000; i++) {
+        char text[64], behind[80];
+        size_t n = 0, dot, digits;
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        digits = 1 + (seed >> 33) % 22;
+        dot = (seed >> 40) % 24;
+        if (seed >> 50 & 3)
+            text[n++] = seed >> 51 & 1 ? '-' : '+';
+        for (size_t k = 0; k < digits; k++) {
+            if (k == dot)
+                text[n++] = '.';
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            text[n++] = (char)('0' + (seed >> 60) % 10);
+        }
+        snprintf(text + n, sizeof(text) - n, "%s", ends[dot < digits ? 2 * ((seed >> 20) % 2) : (seed >> 20) % 3]);
+        double expected = strtod(text, NULL), parsed, scanned;
+        assert_true(noc_parse_double(text, &parsed));
+        int length = snprintf(behind, sizeof(behind), " \t%s 7", text);
+        const char *stop = noc_scan_double(behind, behind + length, &scanned);
+        assert_ptr_equal(stop, behind + length - 2);
+        assert_memory_equal(&parsed, &expected, sizeof(expected));
+        assert_memory_equal(&scanned, &expected, sizeof(expected));
+        stop = noc_scan_double(text, text + strlen(text), &scanned); /* up to the end */
+        assert_ptr_equal(stop, text + strlen(text));
+        assert_memory_equal(&scanned, &expected, sizeof(expected));
+    }
+    double d;
+    static const char *const none[] = { ".", "-", "+", "-.", "1.2.3", "1,5", "1a", "--1", "1-" };
+    for (size_t i = 0; i < NOC_COUNT(none); i++) {
+        assert_false(noc_parse_double(none[i], &d));
+        assert_null(noc_scan_double(none[i], none[i] + strlen(none[i]), &d));
+    }
+}
+
 static void numbers(void **state) {
     double d = 0;
     assert_true(noc_parse_double(" 678031.705 ", &d));
@@ -280,6 +318,7 @@ static void log_without_a_callback_prints_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers_of_all_lengths),
         cmocka_unit_test(numbers),
         cmocka_unit_test(arrays_and_maps),
         cmocka_unit_test(siphash_is_as_published),

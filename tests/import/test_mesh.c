@@ -76,6 +76,66 @@ static void test_reads(void **state) {
     unload(&l);
 }
 
+/* Of each mesh its name, its material's red and its triangles. */
+static void test_names(void **state) {
+    static const char library[] = "newmtl a\nKd 0.1 0 0\nnewmtl b\nKd 0.2 0 0\n";
+    static const char text[] = "mtllib ab.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 2 0\n"
+                               "usemtl a\nf 1 2 3\n"           /* no name: defaultobject */
+                               "o one two\nf 1 2 3\nf 1 2 3\n" /* the first word; the material goes on */
+                               "usemtl b\nf 1 2 3\n"           /* in no group: called as its material */
+                               "usemtl b\nf 2 3 4\n"           /* the same mesh */
+                               "g north side\nusemtl a\n"      /* all words */
+                               "f 1 2 3\nf 1 2 3 4\nf 2 3 4\n" /* triangles come first, the others in a mesh behind */
+                               "g north side\nf 1 2 4\n"       /* the same group */
+                               "usemtl b\nf 1 2 3\n"           /* called as its group */
+                               "o empty\ng empty\no last\nf 1 2 3 5 4\n";
+    static const struct {
+        const char *name;
+        float red;
+        size_t triangles;
+    } expected[] = { { "defaultobject", .1f, 1 }, { "one", .1f, 2 },        { "b", .2f, 2 },   { "north side", .1f, 3 },
+                     { "north side", .1f, 2 },    { "north side", .2f, 1 }, { "last", .2f, 3 } };
+    loaded l;
+    write_file("ab.mtl", library, strlen(library));
+    write_file("names.obj", text, strlen(text));
+    load(&l, "names.obj", NOC_OBJ_UP_Y);
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.scene->meshes.len, NOC_COUNT(expected));
+    for (size_t i = 0; i < NOC_COUNT(expected); i++) {
+        const noc_scene_mesh *m = &l.scene->meshes.data[i];
+        assert_string_equal(m->name, expected[i].name);
+        assert_float_equal(l.scene->materials.data[m->material].albedo[0], expected[i].red, 1e-6);
+        assert_int_equal(m->triangle_count, expected[i].triangles);
+    }
+    unload(&l);
+}
+
+/* Vertices that hold the same are one, whatever their numbers; a float is the nearest to what is written. */
+static void test_shared_vertices(void **state) {
+    enum { SIDE = 40 };
+    char *text = malloc(SIDE * SIDE * 200), *to = text;
+    assert_non_null(text);
+    for (int i = 0; i < SIDE * SIDE; i++) { /* each square with vertices of its own */
+        static const int corner[4][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } };
+        for (int k = 0; k < 4; k++)
+            to += sprintf(to, "v %s%d.1 %d.123456789 -0\n", k % 2 ? "" : "+", i % SIDE + corner[k][0],
+                          i / SIDE + corner[k][1]);
+        to += sprintf(to, "f -4 -3 -2 -1\n");
+    }
+    loaded l;
+    write_file("names.obj", text, strlen(text));
+    free(text);
+    load(&l, "names.obj", NOC_OBJ_UP_Z);
+    assert_int_equal(l.scene->indices.len / 3, 2 * SIDE * SIDE);
+    assert_int_equal(l.scene->positions.len / 3, (SIDE + 1) * (SIDE + 1));
+    for (size_t i = 0; i < l.scene->positions.len; i += 3) {
+        const float *v = l.scene->positions.data + i;
+        assert_true(v[0] == (float)(floor((double)v[0]) + .1) && v[1] == (float)(floor((double)v[1]) + .123456789));
+        assert_true(v[2] == 0 && !signbit(v[2]));
+    }
+    unload(&l);
+}
+
 /* Floats have a step of 0.5 m at a northing of 5.4e6: stairs in map coordinates must keep theirs of 0.17 m. */
 static void test_map_coordinates(void **state) {
     loaded l;
@@ -383,8 +443,9 @@ static void test_broken(void **state) {
 static int set_up(void **state) { return make_mesh_folder(); }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "material.obj", "bad.obj",
-                                         "map.obj",  "faces.obj",      "my test.mtl", "other.mtl" };
+    static const char *const files[] = { "test.mtl",  "named.anything", "missing.obj", "material.obj",
+                                         "bad.obj",   "map.obj",        "faces.obj",   "my test.mtl",
+                                         "other.mtl", "ab.mtl",         "names.obj" };
     return remove_mesh_folder(files, NOC_COUNT(files));
 }
 
@@ -395,6 +456,7 @@ int main(void) {
     }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reads),           cmocka_unit_test(test_map_coordinates),
+        cmocka_unit_test(test_names),           cmocka_unit_test(test_shared_vertices),
         cmocka_unit_test(test_missing_library), cmocka_unit_test(test_missing_material),
         cmocka_unit_test(test_bad_faces),       cmocka_unit_test(test_vertices),
         cmocka_unit_test(test_polygons),        cmocka_unit_test(test_libraries),

@@ -1,4 +1,4 @@
-/* Wavefront OBJ with MTL through Assimp. Researchers' night scenes come so, with their lamps as emissive surfaces.
+/* Wavefront OBJ with MTL. Researchers' night scenes come so, with their lamps as emissive surfaces.
  *
  * Units: metres; import/load/place.c says where the coordinates belong. OBJ does not say which axis is up; y is what
  * most programs write, and noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the
@@ -7,15 +7,13 @@
  * ff.), map_Kd an image of the diffuse reflectance, times Kd. Assimp hears nothing of that one, which obj_library.c
  * finds; other textures are not read.
  *
- * One odd number makes Assimp refuse a file whole, so it sees a text that obj_offset.c, obj_faces.c and obj_library.c
- * made plain. */
+ * Assimp reads the materials. Vertices and faces are read here (obj_text.c): its floats would round coordinates of a
+ * CRS to half a metre, one odd number makes it refuse a file whole, and it takes 500 bytes a triangle. */
 #include "import/import.h"
-#include "import/mesh/obj_faces.h"
 #include "import/mesh/obj_library.h"
 #include "import/mesh/obj_materials.h"
-#include "import/mesh/obj_offset.h"
+#include "import/mesh/obj_mesh.h"
 #include "import/mesh/obj_up.h"
-#include "import/mesh/polygons.h"
 #include "noc_config.h"
 #include "scene/scene.h"
 
@@ -72,22 +70,21 @@ static bool probe(const char *head, size_t size) {
 #include <assimp/ObjMaterial.h>
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
-#include <assimp/config.h>
 #include <assimp/material.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-/* ---- files as Assimp sees them: the OBJ from our stream, MTLs from beside it ---- */
+/* ---- files as Assimp sees them: an OBJ of ours, MTLs from beside the one that is read ---- */
 
 #define ROOT "@/" /* names that begin so lie in the OBJ's folder */
 
 typedef struct library {
     obj_folder folder;
     char *main_name; /* what the OBJ is called to Assimp: its content decides, so always .obj */
-    char *data;
-    size_t size, faces;
-    char *missing; /* first library that could not be opened, and why */
-    bool refused;  /* memory was, to what Assimp would have read */
+    char *data;      /* the OBJ's */
+    size_t size;
+    NOC_ARRAY(char) asked; /* what Assimp reads in its place */
+    char *missing;         /* first library that could not be opened, and why */
+    bool refused;          /* memory was, to what Assimp would have read */
     obj_images images;
     geo_issues *issues;
 } library;
@@ -125,7 +122,7 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
     library *lib = (library *)io->UserData;
     open_file o = { 0 };
     if (!strcmp(name, lib->main_name)) {
-        o = (open_file){ .data = lib->data, .size = lib->size };
+        o = (open_file){ .data = lib->asked.data, .size = lib->asked.len };
     } else {
         const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
         o.data = obj_open_library(&lib->folder, relative, &o.size, NULL, lib->issues);
@@ -228,83 +225,10 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
     return out;
 }
 
-/* ---- meshes ---- */
-
-typedef struct mesh_target {
-    const mesh_parts *parts;
-    const obj_images *images;
-    const double *offset; /* of the coordinates as Assimp has them, in the file's axes */
-    bool z_up;
-    obj_spread *spread;
-} mesh_target;
-
-/* Puts the polygons' triangles behind the others; false where there is no memory. */
-static bool join_polygons(cut_mesh *cut, double **xyz, float **uv, uint32_t **indices, size_t *vertices) {
-    size_t more = cut->extra.xyz.len / 3, corners = cut->extra.indices.len;
-    double *x = more ? noc_realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
-    *xyz = x ? x : *xyz;
-    uint32_t *v = x ? noc_realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
-    *indices = v ? v : *indices;
-    float *places = v && *uv ? noc_realloc(*uv, (*vertices + more) * 2 * sizeof(*places)) : NULL;
-    if (!more || !v || (*uv && !places))
-        return !more;
-    if (places) {
-        memcpy(places + 2 * *vertices, cut->extra.uv.data, 2 * more * sizeof(*places));
-        *uv = places;
-    }
-    memcpy(x + 3 * *vertices, cut->extra.xyz.data, 3 * more * sizeof(*x));
-    for (size_t i = 0; i < corners; i++)
-        v[3 * cut->triangle_count + i] = (uint32_t)*vertices + cut->extra.indices.data[i];
-    *vertices += more;
-    cut->triangle_count += corners / 3;
-    return true;
-}
-
-/* image: NULL: none, or the mesh has no places in it. */
-static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material, const obj_image *image) {
-    size_t vertices = m->mNumVertices;
-    double *xyz = noc_alloc_large(vertices * 3, sizeof(*xyz));
-    uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 6, sizeof(*indices));
-    float *uv = image ? noc_alloc_large(vertices * 2, sizeof(*uv)) : NULL;
-    const char *name = m->mName.length ? m->mName.data : NULL;
-    cut_mesh cut = {
-        .xyz = xyz, .uv = uv, .indices = indices, .issues = to->parts->issues, .name = name ? name : "unnamed"
-    };
-    bool memory = xyz && indices && (uv || !image);
-    for (size_t i = 0; i < vertices && memory && uv; i++) {
-        const struct aiVector3D *at = &m->mTextureCoords[0][i];
-        uv[2 * i] = (float)(at->x * image->scale[0] + image->offset[0]);
-        uv[2 * i + 1] = (float)(at->y * image->scale[1] + image->offset[1]);
-    }
-    for (size_t i = 0; i < vertices && memory; i++) {
-        const struct aiVector3D *v = &m->mVertices[i];
-        double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
-        xyz[3 * i] = x;
-        xyz[3 * i + 1] = to->z_up ? y : 0 - z; /* no -0 */
-        xyz[3 * i + 2] = to->z_up ? z : y;
-    }
-    for (size_t i = 0; i < m->mNumFaces && memory; i++)
-        cut_face(&cut, m->mFaces[i].mIndices, m->mFaces[i].mNumIndices);
-    memory = memory && !cut.extra.no_memory && join_polygons(&cut, &xyz, &uv, &indices, &vertices);
-    if (memory)
-        obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
-    noc_mesh mesh = { .vertex_count = vertices,
-                      .positions = xyz,
-                      .triangle_count = cut.triangle_count,
-                      .indices = indices,
-                      .material = material,
-                      .uv = uv,
-                      .name = name };
-    noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz) : noc_no_memory(to->parts->log, cut.name);
-    geo_triangles_free(&cut.extra);
-    free(xyz);
-    free(uv);
-    free(indices);
-    return status;
-}
+/* ---- from its text to a scene ---- */
 
 /* The material of so many, without or with its image. */
-static noc_status add_material(const mesh_target *to, const struct aiMaterial *from, const char *name,
+static noc_status add_material(const obj_target *to, const struct aiMaterial *from, const char *name,
                                const obj_image *texture, int *material) {
     noc_material converted = convert_material(from, name, to->parts->issues);
     mesh_image image = { .name = texture ? texture->name : NULL,
@@ -317,45 +241,47 @@ static noc_status add_material(const mesh_target *to, const struct aiMaterial *f
     return to->parts->material(to->parts->ctx, &converted, name, texture ? &image : NULL, material);
 }
 
-static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
+/* The materials by their names; what has none, or one that is not there, has the first. */
+static noc_status add_meshes(const struct aiScene *from, const obj_text *text, const obj_target *to) {
+    noc_map numbers = { 0 };
     int *materials = noc_alloc(((size_t)from->mNumMaterials + 1) * 2 * sizeof(*materials)); /* see add_material */
-    if (!materials)
-        return noc_no_memory(to->parts->log, "OBJ");
+    bool memory = materials != NULL;
+    obj_builder builder = { .to = to, .text = text };
     noc_status status = NOC_OK;
-    memset(materials, 0xff, ((size_t)from->mNumMaterials + 1) * 2 * sizeof(*materials));
-    for (unsigned i = 0; i < from->mNumMeshes && !status; i++) {
-        const struct aiMesh *m = from->mMeshes[i];
-        if (!m->mVertices || m->mMaterialIndex >= from->mNumMaterials)
-            continue;
+    for (unsigned i = from->mNumMaterials; i-- && memory;) { /* of one name the first */
         struct aiString name = { 0 };
-        uint64_t number;
-        aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
-        const obj_image *image = map_get(&to->images->of, name.data, &number) ? &to->images->list.data[number] : NULL;
-        if (image && !m->mTextureCoords[0]) {
+        aiGetMaterialString(from->mMaterials[i], "?mat.name", 0, 0, &name);
+        memory = map_put(&numbers, name.data, i, NULL);
+        materials[2 * i] = materials[2 * i + 1] = -1;
+    }
+    for (size_t i = 0; i < text->meshes.len && memory && !status && from->mNumMaterials; i++) {
+        const obj_mesh *mesh = &text->meshes.data[i];
+        uint64_t number = 0, image_number;
+        struct aiString name = { 0 };
+        if (mesh->material)
+            map_get(&numbers, mesh->material, &number);
+        aiGetMaterialString(from->mMaterials[number], "?mat.name", 0, 0, &name);
+        const obj_image *image =
+            map_get(&to->images->of, name.data, &image_number) ? &to->images->list.data[image_number] : NULL;
+        if (image && !mesh->placed) {
             geo_issue(to->parts->issues, GEO_GUESSED, "texture without places in it, plain material", name.data);
             image = NULL;
         }
-        int *material = &materials[2 * (size_t)m->mMaterialIndex + (image != NULL)];
+        int *material = &materials[2 * number + (image != NULL)];
         if (*material < 0)
-            status = add_material(to, from->mMaterials[m->mMaterialIndex], name.data, image, material);
+            status = add_material(to, from->mMaterials[number], name.data, image, material);
         if (!status)
-            status = add_mesh(to, m, *material, image);
+            status = obj_add_mesh(&builder, i, *material, image);
     }
+    obj_builder_free(&builder);
+    map_free(&numbers);
     free(materials);
-    return status;
+    return memory ? status : noc_no_memory(to->parts->log, "OBJ");
 }
 
-static noc_status read_obj(const char *path, library *lib, const mesh_target *to) {
+static noc_status read_obj(const char *path, library *lib, const obj_text *text, const obj_target *to) {
     struct aiFileIO io = { .OpenProc = library_open, .CloseProc = library_close, .UserData = (char *)lib };
-    struct aiPropertyStore *settings = aiCreatePropertyStore();
-    aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
-                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                   (lib->images.list.len ? 0 : aiComponent_TEXCOORDS) | aiComponent_TEXTURES);
-    const struct aiScene *from = aiImportFileExWithProperties(lib->main_name,
-                                                              aiProcess_SortByPType | aiProcess_RemoveComponent |
-                                                                  aiProcess_JoinIdenticalVertices,
-                                                              &io, settings);
+    const struct aiScene *from = aiImportFileEx(lib->main_name, 0, &io);
     noc_status status;
     if (lib->refused) {
         status = noc_no_memory(to->parts->log, path);
@@ -367,10 +293,9 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
             noc_warn(to->parts->log, "%s: default material, because %s", path, lib->missing);
             geo_issue(lib->issues, GEO_GUESSED, "library of materials that cannot be read, default material", "mtllib");
         }
-        status = add_scene(from, to);
+        status = add_meshes(from, text, to);
     }
     aiReleaseImport(from);
-    aiReleasePropertyStore(settings);
     return status;
 }
 
@@ -382,20 +307,26 @@ static void plain_lines(library *lib) {
             lib->data[i] = lib->data[i] == '\r' ? '\n' : lib->data[i];
 }
 
-static noc_status plain_text(library *lib, double offset[3], const char *name, noc_log *log) {
-    obj_numbers bad = { 0 };
-    bool places = lib->images.list.len > 0;
-    noc_status status = obj_plain_vertices(&lib->data, &lib->size, places, offset, &bad, lib->issues, name, log);
-    lib->faces = status ? 0 : obj_plain_faces(lib->data, lib->size, places, &bad, lib->issues);
-    array_free(&bad);
-    return status;
+/* Libraries of the text, and a triangle, without which Assimp refuses a file. */
+static bool ask_for_materials(library *lib) {
+    static const char triangle[] = "v 0 0 0\nf 1 1 1\n";
+    bool memory = true;
+    for (const char *p = lib->data, *stop = p + lib->size, *end; p < stop && memory; p = end + (end < stop)) {
+        const char *newline = memchr(p, '\n', (size_t)(stop - p));
+        end = newline ? newline : stop;
+        while (p < end && (*p == ' ' || *p == '\t'))
+            p++;
+        size_t n = (size_t)(end - p);
+        if (n > 7 && (!memcmp(p, "mtllib", 6) || !memcmp(p, "usemtl", 6)))
+            memory = array_append(&lib->asked, p, n) && array_push(&lib->asked, '\n');
+    }
+    return memory && array_append(&lib->asked, triangle, sizeof(triangle) - 1);
 }
 
 static noc_status read_parts(const char *path, noc_stream *stream, const noc_import_params *params,
                              const mesh_parts *parts, const char **format) {
     *format = "OBJ";
     library lib = { .issues = parts->issues };
-    double offset[3];
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
     const char *name = noc_stream_name(stream);
     bool textures = !params || params->textures;
@@ -406,28 +337,30 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside, .textures = textures };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
-    const mesh_target to = { .parts = parts,
-                             .images = &lib.images,
-                             .offset = offset,
-                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
-                             .spread = &spread };
+    obj_text text = { 0 };
+    const obj_target to = {
+        .parts = parts, .images = &lib.images, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread
+    };
     plain_lines(&lib);
     status = folder && lib.main_name
                  ? obj_plain_materials(lib.data, lib.size, &lib.folder, textures ? &lib.images : NULL,
                                        noc_stream_budget(stream), parts->issues, name, parts->log)
                  : noc_no_memory(parts->log, path);
-    if (!status)
-        status = plain_text(&lib, offset, name, parts->log);
-    if (!status && lib.faces) { /* Assimp refuses a file without any */
-        status = read_obj(path, &lib, &to);
+    if (!status &&
+        (!obj_text_read(&text, lib.data, lib.size, lib.images.list.len > 0, parts->issues) || !ask_for_materials(&lib)))
+        status = noc_no_memory(parts->log, name);
+    free(lib.data);
+    if (!status && text.faces.len) {
+        status = read_obj(path, &lib, &text, &to);
         if (!status)
             obj_check_up(&spread, to.z_up, path, parts->log);
     }
+    obj_text_free(&text);
     obj_images_free(&lib.images);
+    array_free(&lib.asked);
     free(folder);
     free(lib.main_name);
     free(lib.missing);
-    free(lib.data);
     return status;
 }
 

@@ -1,4 +1,4 @@
-/* obj_materials: what an OBJ asks of Assimp, whose materials take 36 kB each. */
+/* obj_materials: the materials that an OBJ asks for, and what reading it will take. */
 #ifndef NOC_OBJ_MATERIALS_H
 #define NOC_OBJ_MATERIALS_H
 
