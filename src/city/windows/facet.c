@@ -87,8 +87,8 @@ static bool apart(const double a[3][2], const double b[3][2]) {
             for (int k = 0; k < 3; k++) {
                 double d[2] = { (a[k][0] * x + a[k][1] * y) / length, (b[k][0] * x + b[k][1] * y) / length };
                 for (int j = 0; j < 2; j++) {
-                    lo[j] = fmin(lo[j], d[j]);
-                    hi[j] = fmax(hi[j], d[j]);
+                    lo[j] = NOC_MIN(lo[j], d[j]);
+                    hi[j] = NOC_MAX(hi[j], d[j]);
                 }
             }
             if (lo[0] - hi[1] > WINDOW_GAP_MM / 1000 || lo[1] - hi[0] > WINDOW_GAP_MM / 1000)
@@ -106,20 +106,17 @@ static bool in_plane(const wall_plane *plane, const wall_piece *b) {
     return in;
 }
 
-static bool touch(const wall_piece *a, const wall_piece *b) {
+/* Of two whose boxes do. */
+static bool touch(const wall_piece *a, const wall_piece *b, const wall_plane *of_a, const wall_plane *of_b) {
     double p[3][2], q[3][2];
-    for (int k = 0; k < 3; k++)
-        if (a->lo[k] - b->hi[k] > WINDOW_MERGE_MM / 1000 || b->lo[k] - a->hi[k] > WINDOW_MERGE_MM / 1000)
-            return false;
     if (!(dot3(a->n, b->n) > 0))
         return false;
-    const wall_piece *large = a->area >= b->area ? a : b, *other = large == a ? b : a;
-    wall_plane plane = wall_plane_make(large->t.p[0], large->n);
-    if (!in_plane(&plane, other))
+    const wall_plane *plane = a->area >= b->area ? of_a : of_b; /* of the larger one */
+    if (!in_plane(plane, plane == of_a ? b : a))
         return false;
     for (int i = 0; i < 3; i++) {
-        wall_plane_at(&plane, a->t.p[i], p[i]);
-        wall_plane_at(&plane, b->t.p[i], q[i]);
+        wall_plane_at(plane, a->t.p[i], p[i]);
+        wall_plane_at(plane, b->t.p[i], q[i]);
     }
     return !apart(p, q);
 }
@@ -133,8 +130,15 @@ typedef struct pairs {
     uint32_t *first, *next_to; /* of each piece: its neighbours are next_to[first[i]] to next_to[first[i + 1]] */
 } pairs;
 
+/* Of a piece's box, across the sweep and up: the least coordinates, and the greatest with their signs turned. Rounded
+ * outwards, so that the sweep, which reads these alone, passes none over that boxes_touch would keep. */
+typedef float sweep_box __attribute__((vector_size(16)));
+typedef int64_t sweep_mask __attribute__((vector_size(16)));
+#define OUTWARDS 1e-6 /* of the size of a coordinate, and more than floats lose */
+
 typedef struct sweep_item {
-    double lo;
+    sweep_box box;
+    double lo, hi; /* along the sweep */
     uint32_t piece;
 } sweep_item;
 
@@ -145,8 +149,41 @@ static int compare_items(const void *a, const void *b) {
     return (x->piece > y->piece) - (x->piece < y->piece);
 }
 
-static bool find_pairs(const wall_facets *f, size_t count, pairs *out) {
-    sweep_item *items = noc_alloc(NOC_MAX(count, 1u) * sizeof(*items));
+static sweep_item item_of(const wall_piece *p, int axis, size_t piece) {
+    const double least[4] = { p->lo[!axis], p->lo[2], -p->hi[!axis], -p->hi[2] };
+    sweep_item item = { .lo = p->lo[axis], .hi = p->hi[axis], .piece = (uint32_t)piece };
+    for (int k = 0; k < 4; k++)
+        item.box[k] = (float)(least[k] - OUTWARDS * fabs(least[k]));
+    return item;
+}
+
+static bool boxes_touch(const wall_piece *a, const wall_piece *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->lo[k] - b->hi[k] > WINDOW_MERGE_MM / 1000 || b->lo[k] - a->hi[k] > WINDOW_MERGE_MM / 1000)
+            return false;
+    return true;
+}
+
+/* Of the item with those that come behind it. planes: of each piece. */
+static bool pairs_of(const wall_facets *f, const sweep_item *item, const sweep_item *end, const wall_plane *planes,
+                     pairs *out) {
+    const float merge = (float)(1.001 * WINDOW_MERGE_MM / 1000);
+    const sweep_box most = { merge - item->box[2], merge - item->box[3], merge - item->box[0], merge - item->box[1] };
+    const wall_piece *a = &f->pieces.data[item->piece];
+    for (const sweep_item *other = item + 1; other < end && other->lo <= item->hi + WINDOW_MERGE_MM / 1000; other++) {
+        sweep_mask far = (sweep_mask)(other->box > most);
+        if (far[0] | far[1])
+            continue;
+        const wall_piece *b = &f->pieces.data[other->piece];
+        if (boxes_touch(a, b) && touch(a, b, &planes[item->piece], &planes[other->piece]) &&
+            !array_push(&out->list, (pair){ item->piece, other->piece }))
+            return false;
+    }
+    return true;
+}
+
+static bool find_pairs(const wall_facets *f, size_t count, const wall_plane *planes, pairs *out) {
+    sweep_item *items = noc_alloc_large(NOC_MAX(count, 1u), sizeof(*items)); /* aligned */
     double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
     if (!items)
         return false;
@@ -157,15 +194,11 @@ static bool find_pairs(const wall_facets *f, size_t count, pairs *out) {
         }
     int axis = hi[1] - lo[1] > hi[0] - lo[0];
     for (size_t i = 0; i < count; i++)
-        items[i] = (sweep_item){ f->pieces.data[i].lo[axis], (uint32_t)i };
+        items[i] = item_of(&f->pieces.data[i], axis, i);
     qsort(items, count, sizeof(*items), compare_items);
     bool ok = true;
-    for (size_t i = 0; ok && i < count; i++) {
-        const wall_piece *a = &f->pieces.data[items[i].piece];
-        for (size_t j = i + 1; ok && j < count && items[j].lo <= a->hi[axis] + WINDOW_MERGE_MM / 1000; j++)
-            if (touch(a, &f->pieces.data[items[j].piece]))
-                ok = array_push(&out->list, (pair){ items[i].piece, items[j].piece });
-    }
+    for (size_t i = 0; ok && i < count; i++)
+        ok = pairs_of(f, &items[i], items + count, planes, out);
     free(items);
     return ok;
 }
@@ -220,10 +253,9 @@ static void settle_facet(const wall_facets *w, facet *f) {
 }
 
 /* From a piece on all that hangs together in its plane. */
-static bool grow(wall_facets *w, const pairs *p, uint32_t seed) {
+static bool grow(wall_facets *w, const pairs *p, const wall_plane *plane, uint32_t seed) {
     uint32_t number = (uint32_t)w->facets.len;
     facet f = { .first = (uint32_t)w->by_facet.len };
-    wall_plane plane = wall_plane_make(w->pieces.data[seed].t.p[0], w->pieces.data[seed].n);
     w->pieces.data[seed].facet = number;
     if (!array_push(&w->by_facet, seed))
         return false;
@@ -231,7 +263,7 @@ static bool grow(wall_facets *w, const pairs *p, uint32_t seed) {
         uint32_t at = w->by_facet.data[done];
         for (uint32_t i = p->first[at]; i < p->first[at + 1]; i++) {
             wall_piece *b = &w->pieces.data[p->next_to[i]];
-            if (b->facet != NO_FACET || !in_plane(&plane, b))
+            if (b->facet != NO_FACET || !in_plane(plane, b))
                 continue;
             b->facet = number;
             if (!array_push(&w->by_facet, p->next_to[i]))
@@ -255,9 +287,13 @@ bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out
         qsort(out->pieces.data, count, sizeof(*out->pieces.data), compare_pieces);
     while (some < count && out->pieces.data[some].area > 1e-6)
         some++;
-    bool ok = find_pairs(out, some, &p) && list_neighbours(some, &p);
+    wall_plane *planes = noc_alloc(NOC_MAX(some, 1u) * sizeof(*planes));
+    for (size_t i = 0; planes && i < some; i++)
+        planes[i] = wall_plane_make(out->pieces.data[i].t.p[0], out->pieces.data[i].n);
+    bool ok = planes && find_pairs(out, some, planes, &p) && list_neighbours(some, &p);
     for (size_t i = 0; ok && i < some; i++)
-        ok = out->pieces.data[i].facet != NO_FACET || grow(out, &p, (uint32_t)i);
+        ok = out->pieces.data[i].facet != NO_FACET || grow(out, &p, &planes[i], (uint32_t)i);
+    free(planes);
     array_free(&p.list);
     free(p.first);
     free(p.next_to);
