@@ -4,7 +4,7 @@ import re
 
 import browser
 import wire
-from leaf import (CITY, Opened, blur, camera, choose, differs, direction, far, look, opened, press_text, rests,
+from leaf import (CITY, Opened, apart, blur, camera, choose, differs, direction, far, look, opened, press_text, rests,
                   run, state)
 
 
@@ -50,6 +50,12 @@ class Page(Opened):
         shares = page.evaluate('''[...document.querySelectorAll('table.rows tbody tr td:nth-child(3)')]
             .map((cell) => parseFloat(cell.textContent))''')
         assert 0 < sum(shares) < 101, shares
+        page.evaluate("document.querySelector('table.rows tbody tr[tabindex]').focus()")
+        page.key('Enter')  # the card of a light, and back
+        page.wait("document.querySelector('.answer').innerText.includes('What it lights')")
+        press_text(page, 'Back to the ranking')
+        again = page.evaluate("document.querySelector('.answer').innerText")
+        assert ' lx' in again and 'Who lights this place?' in again, again
         press_text(page, 'CSV')
         name, data = page.downloaded()
         lines = data.decode().strip().splitlines()
@@ -200,6 +206,41 @@ class Page(Opened):
         buttons = page.evaluate("[...document.querySelectorAll('.which button')].map((one) => one.textContent)")
         assert captions == ['A', 'B'] and buttons == ['A', 'B', 'all'], (captions, buttons)
         page.evaluate('viewer.edit(0)')
+
+    def test_holds(self):
+        """What is held of A stays while lamps change, under any shape of the window, until the camera moves."""
+        page = self.page
+        group = next(name for name in state(page, 'world.values') if name == 'group.lamps')
+        for pane in (0, 1):
+            page.evaluate(f"viewer.set('exposure', 'auto', {pane})")
+        page.wait("viewer.state.panes.every(({ values }) => values.exposure === 'auto')")
+        rests(page, 4)
+        page.press('.hold')
+        page.wait("viewer.state.panes.every(({ values }) => values.exposure !== 'auto')")
+        rests(page)
+        before = look(page)
+        page.key('p')
+        press_text(page, 'All sodium')
+        page.wait(f"viewer.state.world.values['{group}'] === '1,2000K'")
+        held = look(page)
+        assert apart(before, held) < 4, f'what is held is another picture: {apart(before, held)}'
+        press_text(page, 'Deep night, 3 h, lamps at half')
+        page.wait(f"viewer.state.world.values['{group}'] === '0.5,2000K'") # and keeps its colour
+        marks = page.evaluate("[...document.querySelectorAll('.control .mark:not([hidden])')].length")
+        assert marks == page.evaluate('viewer.schema.world.length'), marks
+        differs(page, before, 6, pane=1)
+        assert apart(held, look(page)) == 0, 'what is held has changed'
+        assert 'held' in page.evaluate("document.querySelector('.caption').textContent")
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("document.querySelector('.hold').getAttribute('aria-pressed') === 'false'")
+        page.wait("viewer.state.panes.every(({ values }) => values.exposure === 'auto')")
+        differs(page, before, 6)
+        page.evaluate("viewer.goTo('street')")
+        press_text(page, 'Evening, 19 h')
+        page.evaluate(f"viewer.setWorld('{group}', '1,own')")
+        page.evaluate("viewer.setWorld('hour', viewer.option('hour').value)")
+        page.key('Escape')
+        rests(page)
 
     def test_compares(self):
         page = self.page

@@ -126,7 +126,7 @@ class Places(Opened):
         label = page.evaluate("document.querySelector('label[for=\"option-window-lit\"]').textContent")
         assert label == 'share of windows lit at 21 h', label
         titles = page.evaluate("[...document.querySelectorAll('.presets button')].map((one) => one.title)")
-        assert 'sets hour 3, lamps 0.5,own' in titles, titles
+        assert 'sets hour 3, lamps 0.5' in titles, titles
         page.evaluate("(document.querySelector('input[type=search]').value = '', 0)")
         page.key('Escape')
         page.wait("document.getElementById('left').hidden")

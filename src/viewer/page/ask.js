@@ -7,6 +7,7 @@ export class Ask {
     #running = false;
     #answer = null;
     #what = '';
+    #ranking = null; // the ranking that was left for a lamp's card: { what, answer, words, asked }
     #lit = new Set(); // lights whose rows are held
     #tool = null; // corners of the rectangle that is drawn in the picture
     #region = null; // that was asked: { values, camera, outline }
@@ -68,8 +69,20 @@ export class Ask {
     }
 
     lamp(light) {
+        const answer = this.#answer;
+        if (answer?.rows) this.#ranking = { answer, words: this.#what, asked: this.#asked };
         this.#ask('lamp', { light: light.light }, 'lamp');
         this.app.highlight([light]);
+    }
+
+    #back() {
+        const { answer, words, asked } = this.#ranking;
+        if (this.#running) this.app.cancel(this.#asked);
+        this.app.highlight([]);
+        this.#what = words;
+        this.#asked = asked;
+        this.#take('region', { ...answer, done: 1 });
+        this.out.querySelector('tbody tr[tabindex]')?.focus();
     }
 
     // The next drag in the picture is a rectangle.
@@ -150,6 +163,7 @@ export class Ask {
 
     #forget() {
         this.#answer = null;
+        this.#ranking = null;
         this.map.place = null;
         this.building.disabled = this.clear.disabled = true;
         this.app.highlight([]);
@@ -287,7 +301,9 @@ export class Ask {
     #lamp(answer) {
         const kelvin = answer.kelvin ? `${number(answer.kelvin, 4)} K` : null;
         const go = answer.place ? button('Go there', () => this.app.look(answer.place)) : null;
+        const back = this.#ranking ? button('Back to the ranking', () => this.#back()) : null;
         return [
+            back,
             el('h3', { text: answer.name || `light ${answer.light ?? ''}` }),
             this.#facts([
                 ['kind', answer.kind],

@@ -1,5 +1,5 @@
 // compare.js: layouts: one picture, two beside a divider, all methods, a difference from the reference.
-import { el, Choice, clamp } from './dom.js';
+import { el, button, number, Choice, clamp } from './dom.js';
 
 export const LAYOUTS = [
     ['single', 'One', 'one picture'],
@@ -16,7 +16,15 @@ export class Layouts {
         this.choice = new Choice(root, (name) => this.set(name));
         this.choice.fill(LAYOUTS.map(([name, text, title]) => ({ name, text, title })));
         this.divider = this.#divider();
-        panes.root.append(this.divider);
+        this.hold = button('Hold A', () => panes.hold(!panes.held), {
+            class: 'hold',
+            title: 'A keeps its lamps, windows, hour and materials while you change them, and is compared with B',
+            'aria-pressed': 'false',
+            hidden: true,
+        });
+        this.hold.addEventListener('pointerdown', (event) => event.stopPropagation()); // it turns nothing
+        panes.root.append(this.divider, this.hold);
+        app.on('held', (held) => this.#held(held));
         app.on('state', (state) => this.#show(state));
         panes.root.addEventListener('click', (event) => this.#edit(event));
         this.#place(0.5);
@@ -28,7 +36,23 @@ export class Layouts {
 
     #show(state) {
         this.choice.set(state.layout);
-        this.divider.hidden = state.layout !== 'divider';
+        this.divider.hidden = this.hold.hidden = state.layout !== 'divider';
+    }
+
+    // Two exposures that are found would hide what is dimmed: both pictures get that of A.
+    #held(held) {
+        this.hold.setAttribute('aria-pressed', String(held));
+        const found = this.app.stats[0]?.ev100;
+        if (held && this.app.values(1).exposure === 'auto' && Number.isFinite(found)) {
+            for (const pane of [0, 1]) this.app.set('exposure', found.toFixed(2), pane);
+            this.exposed = true;
+            const text = 'A is held: change lamps, windows or the hour, and compare.';
+            this.app.emit('note', 'info', `${text} Both are exposed for EV100 ${number(found)}.`);
+        } else if (!held && this.exposed) {
+            const panes = this.app.state?.panes?.length ?? 1;
+            for (let pane = 0; pane < Math.min(panes, 2); pane++) this.app.set('exposure', 'auto', pane);
+            this.exposed = false;
+        }
     }
 
     // A click on a caption says which picture the settings are of.

@@ -141,9 +141,13 @@ export function groupWords(value) {
     return words;
 }
 
+export function toGroup({ on, scale, colour }) {
+    return on ? `${scale || 1},${colour}` : `off,${colour}`;
+}
+
 function group(option, change, labels) {
     let words = groupWords(option.value);
-    const told = () => change(words.on ? `${words.scale || 1},${words.colour}` : `off,${words.colour}`);
+    const told = () => change(toGroup(words));
     const name = option.name.replace(/^group\./, '');
     const on = bool(option, (value) => ((words.on = value === 'on'), told()), labels);
     const brightness = { name: `${name}, brightness`, kind: 'real', min: 0, max: 4, value: '1', unit: '×' };
@@ -193,6 +197,7 @@ export class Control {
             labels,
         );
         this.why = el('span', { class: 'why', id: `${id}-why` });
+        this.shared = el('span', { class: 'mark', text: 'all pictures', hidden: true });
         this.back = button('↺', () => this.#say(option.value, true), {
             class: 'back',
             title: `back to ${option.value || 'empty'}`,
@@ -203,6 +208,7 @@ export class Control {
             { class: 'head' },
             el('label', { for: id, text: name }),
             ...(this.made.wide ? [] : this.made.parts),
+            this.shared,
             this.back,
         );
         const below = this.made.wide ? this.made.parts : this.made.below;
@@ -226,6 +232,11 @@ export class Control {
         this.back.hidden = same(this.option, value);
         this.root.classList.toggle('idle', Boolean(why));
         this.why.textContent = why ? `no effect: ${why}` : '';
+    }
+
+    // Is it of the scene, where several pictures are shown?
+    share(shared) {
+        this.shared.hidden = !shared;
     }
 
     #say(value, settled = false) {

@@ -1,6 +1,6 @@
 // panels.js: drawers with panels, and the panel of settings, which the schema makes.
 import { el, button } from './dom.js';
-import { Control, same } from './controls.js';
+import { Control, groupWords, same, toGroup } from './controls.js';
 
 // What the tabs open: a drawer at each side; on a narrow window, one at a time.
 export class Drawers {
@@ -82,20 +82,29 @@ export class Drawers {
     }
 }
 
-// Sets of values at once, with what they are; what the schema does not have is left out.
+// Sets of values at once, with what they are; what the schema does not have is left out. Of a group of lights what is
+// named is set: whether it is on, how bright, or which colour.
 const PRESETS = [
-    ['Evening, 19 h', { hour: 19 }],
-    ['21 h', { hour: 21 }],
-    ['Deep night, 3 h', { hour: 3 }],
-    ['Deep night, 3 h, lamps at half', { hour: 3, 'group.lamps': '0.5,own' }],
+    ['Evening, 19 h', { hour: 19, 'group.lamps': { on: true, scale: 1 } }],
+    ['21 h', { hour: 21, 'group.lamps': { on: true, scale: 1 } }],
+    ['Deep night, 3 h', { hour: 3, 'group.lamps': { on: true, scale: 1 } }],
+    ['Deep night, 3 h, lamps at half', { hour: 3, 'group.lamps': { on: true, scale: 0.5 } }],
     ['After rain', { wet: 'on' }],
     ['Dry', { wet: 'off' }],
-    ['All sodium', { 'group.lamps': '1,2000K' }],
-    ['All LED', { 'group.lamps': '1,4000K' }],
-    ['Lamps alone', { 'group.windows': 'off', 'group.cars': 'off' }],
+    ['All sodium', { 'group.lamps': { colour: '2000K' } }],
+    ['All LED', { 'group.lamps': { colour: '4000K' } }],
+    ['Lamps alone', { 'group.windows': { on: false }, 'group.cars': { on: false } }],
     ['Still', { preset: 'still' }],
     ['Moving', { preset: 'interactive' }],
 ];
+
+const saysGroup = (value) =>
+    typeof value !== 'object'
+        ? value
+        : Object.entries(value)
+              .filter(([key]) => key !== 'on' || !('scale' in value))
+              .map(([key, one]) => (key === 'on' ? (one ? 'on' : 'off') : one))
+              .join(', ');
 
 // What one looks for where a kind of options is meant.
 const WORDS = { group: ['dim', 'dimming', 'off', 'on', 'brightness', 'colour', 'LED', 'sodium', 'kelvin'] };
@@ -226,7 +235,7 @@ export class Settings {
         const says = (values) =>
             `sets ${Object.entries(values)
                 .filter(([name]) => this.app.option(name))
-                .map(([name, value]) => `${name.replace(/^group\./, '')} ${value}`)
+                .map(([name, value]) => `${name.replace(/^group\./, '')} ${saysGroup(value)}`)
                 .join(', ')}`;
         this.presets.replaceChildren(
             ...known.map(([name, values]) => button(name, () => this.apply(values), { title: says(values) })),
@@ -235,15 +244,22 @@ export class Settings {
     }
 
     apply(values) {
-        for (const [name, value] of Object.entries(values)) {
+        for (const [name, given] of Object.entries(values)) {
+            const value = typeof given === 'object' ? toGroup({ ...this.#group(name), ...given }) : given;
             if (this.app.schema.world.some((one) => one.name === name)) this.app.setWorld(name, value);
             else if (this.app.schema.look.some((one) => one.name === name)) this.app.set(name, value);
         }
     }
 
+    #group(name) {
+        return groupWords(this.app.state?.world?.values?.[name] ?? this.app.option(name)?.value ?? '');
+    }
+
     #show() {
         const { state } = this.app;
         if (!state) return;
+        const several = (state.panes?.length ?? 1) > 1;
+        for (const { name } of this.app.schema.world) this.#controls.get(name)?.share(several);
         const look = this.app.values();
         for (const [name, control] of this.#controls)
             control.show(look[name] ?? state.world?.values?.[name], this.app.idle(name));

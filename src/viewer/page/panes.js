@@ -15,6 +15,7 @@ export class Panes {
         this.layout = 'single';
         this.split = 0.5; // of the divider
         this.share = 1; // of the window's resolution
+        this.held = null; // { values, camera, frozen }: A beside a divider keeps the scene's settings that it had
         app.on('picture', (picture) => this.#take(picture));
         app.on('state', (state) => this.#arrange(state));
         app.on('stats', () => this.#captions());
@@ -61,7 +62,8 @@ export class Panes {
         const { root, canvas } = this.panes[pane];
         const width = root.clientWidth,
             height = root.clientHeight;
-        const scale = Math.min(width / canvas.width, height / canvas.height);
+        const fit = root.classList.contains('held') ? Infinity : width / canvas.width; // what is held keeps its height
+        const scale = Math.min(fit, height / canvas.height);
         const size = { width: canvas.width * scale, height: canvas.height * scale };
         return { x: (width - size.width) / 2, y: (height - size.height) / 2, ...size };
     }
@@ -78,6 +80,36 @@ export class Panes {
         const rect = this.rect(pane);
         const at = project(camera, rect.width / rect.height, place);
         return at && [rect.x + at[0] * rect.width, rect.y + at[1] * rect.height];
+    }
+
+    // While A is held its picture stays as it is whenever the scene has other settings than now. It goes on where the
+    // camera moves, for what was held is of another place then.
+    hold(on) {
+        this.held = on ? { values: this.#settings(), camera: null, frozen: false } : null;
+        this.#freeze();
+        this.app.emit('held', this.held !== null);
+    }
+
+    #settings() {
+        return JSON.stringify(this.app.state?.world?.values ?? {});
+    }
+
+    #freeze() {
+        const { held } = this;
+        const frozen = held !== null && this.#settings() !== held.values;
+        if (frozen && !held.frozen) held.camera = JSON.stringify(this.camera(0));
+        if (held) held.frozen = frozen;
+        this.panes[0].root.classList.toggle('held', frozen);
+        this.#captions();
+    }
+
+    // Is a picture of A one that is not shown, because A is held?
+    #kept(picture) {
+        if (picture.pane !== 0 || !this.held?.frozen) return false;
+        if (JSON.stringify(this.camera(0)) === this.held.camera) return true;
+        this.hold(false);
+        this.app.emit('note', 'info', 'The camera has moved: A is not held any more.');
+        return false;
     }
 
     setSplit(split) {
@@ -110,7 +142,8 @@ export class Panes {
         while (this.panes.length < wanted) this.#add();
         this.states = state.panes ?? [];
         if (changed) this.#grid(wanted);
-        this.#captions();
+        if (this.held && this.layout !== 'divider') this.hold(false);
+        this.#freeze();
         this.draw();
     }
 
@@ -158,7 +191,7 @@ export class Panes {
     #captions() {
         this.panes.forEach(({ caption, root }, index) => {
             const stats = this.app.stats[index];
-            const says = [this.states[index]?.caption ?? ''];
+            const says = [this.states[index]?.caption ?? '', index === 0 && this.held?.frozen ? 'held' : ''];
             if (stats?.rmse !== undefined) says.push(`RMSE ${number(stats.rmse)} cd/m²`);
             if (stats?.relmse !== undefined) says.push(`relMSE ${number(stats.relmse)}`);
             if (stats?.bias !== undefined) says.push(`bias ${number(100 * (stats.bias - 1), 2)} %`);
@@ -172,6 +205,10 @@ export class Panes {
     async #take(picture) {
         const pane = this.panes[picture.pane];
         if (!pane) return this.#acknowledge(picture); // of a layout that was left
+        if (this.#kept(picture)) {
+            this.app.shown(picture.input);
+            return this.#acknowledge(picture);
+        }
         let bitmap = null;
         try {
             bitmap = await createImageBitmap(new Blob([picture.body], { type: picture.type }));
