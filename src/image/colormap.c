@@ -107,8 +107,11 @@ void canvas_fill(canvas *c, int x, int y, int width, int height, const uint8_t r
 /* Layout in units of scale. */
 enum { MARGIN = 6, GAP = 3, BAR = 10, TICK = 3, MIN_WIDTH = 260, TICKS = 16 };
 
-int colorbar_height(int scale) {
-    return scale * (MARGIN + TEXT_HEIGHT + GAP + BAR + TICK + GAP + TEXT_HEIGHT + MARGIN);
+/* Numbers of lines have a second row for those that would touch others. */
+static int rows_of(const colorbar *bar) { return bar && bar->line_count ? 2 : 1; }
+
+int colorbar_height(const colorbar *bar, int scale) {
+    return scale * (MARGIN + TEXT_HEIGHT + GAP + BAR + TICK + rows_of(bar) * (GAP + TEXT_HEIGHT) + MARGIN);
 }
 int colorbar_min_width(int scale) { return scale * MIN_WIDTH; }
 
@@ -162,37 +165,60 @@ const uint8_t *colormap_ink(const uint8_t on[3]) {
 
 static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 };
 
-/* Numbers under a bar whose upper left corner that is; those that would touch the one before are left out. */
+/* Where numbers of a row stand, in pixels. */
+enum { MOST_NUMBERS = NOC_ISOLINES + 2 };
+typedef struct row {
+    int from[MOST_NUMBERS], to[MOST_NUMBERS], count;
+} row;
+
+/* Takes a place in the row, unless it would touch another. */
+static bool takes(row *r, int from, int to) {
+    for (int i = 0; i < r->count; i++)
+        if (from < r->to[i] && to > r->from[i])
+            return false;
+    r->from[r->count] = from;
+    r->to[r->count++] = to;
+    return true;
+}
+
+/* Values with a tick each, and those that have room with their number: the ends of a bar with lines come first. */
+static size_t list_numbers(const colorbar *bar, int length, int scale, double *values) {
+    if (!bar->line_count)
+        return colorbar_ticks(bar, values, (size_t)NOC_CLAMP(length / (40 * scale), 2, TICKS));
+    size_t n = 0;
+    values[n++] = bar->low;
+    values[n++] = bar->high;
+    for (size_t i = 0; i < bar->line_count && n < MOST_NUMBERS; i++)
+        if (bar->lines[i] > bar->low && bar->lines[i] < bar->high)
+            values[n++] = bar->lines[i];
+    return n;
+}
+
+/* Numbers under a bar whose upper left corner that is. */
 static void draw_numbers(canvas *c, int left, int y, int length, int scale, const colorbar *bar) {
-    double round[TICKS];
-    size_t n = bar->line_count;
-    const double *ticks = bar->lines;
-    if (!n) {
-        n = colorbar_ticks(bar, round, (size_t)NOC_CLAMP(length / (40 * scale), 2, TICKS));
-        ticks = round;
-    }
-    int free = 0;
+    double values[MOST_NUMBERS];
+    size_t n = list_numbers(bar, length, scale, values);
+    row rows[2] = { { .count = 0 }, { .count = 0 } };
     for (size_t i = 0; i < n; i++) {
-        if (!(ticks[i] >= bar->low * (1 - 1e-9) && ticks[i] <= bar->high * (1 + 1e-9)))
-            continue;
         char text[32];
-        noc_snprintf(text, sizeof(text), "%.6g", ticks[i]);
-        double share = colorbar_position(bar, ticks[i]);
-        int at = left + (int)(share * (length - 1) + 0.5);
-        int from = at + scale / 2 - text_width(text, scale) / 2;
+        noc_snprintf(text, sizeof(text), "%.6g", values[i]);
+        double share = colorbar_position(bar, values[i]);
+        int at = left + (int)(share * (length - 1) + 0.5), width = text_width(text, scale);
+        int from = at + scale / 2 - width / 2;
         canvas_fill(c, at - scale / 2, y, scale, TICK * scale, ink);
-        if (bar->line_count)
+        if (bar->line_count && i > 1)
             canvas_fill(c, at - scale / 2, y - BAR * scale, scale, BAR * scale,
                         colormap_ink(colormap_at(bar->map, share)));
-        if (from < free)
-            continue;
-        text_draw(c, from, y + (TICK + GAP) * scale, text, scale, ink);
-        free = from + text_width(text, scale) + 4 * scale;
+        for (int k = 0; k < rows_of(bar); k++)
+            if (takes(&rows[k], from, from + width + 4 * scale)) {
+                text_draw(c, from, y + (TICK + GAP + k * (TEXT_HEIGHT + GAP)) * scale, text, scale, ink);
+                break;
+            }
     }
 }
 
 void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar *bar) {
-    canvas_fill(c, x, y, width, colorbar_height(scale), ground);
+    canvas_fill(c, x, y, width, colorbar_height(bar, scale), ground);
     /* room for half a number at either end */
     int side = 24 * scale, left = x + side, length = NOC_MAX(width - 2 * side, 1);
     y += MARGIN * scale;

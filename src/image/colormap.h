@@ -48,9 +48,9 @@ typedef struct colorbar {
 double colorbar_position(const colorbar *bar, double v); /* 0 at its low end, 1 at its high one */
 /* The ink that is read on that colour. */
 const uint8_t *colormap_ink(const uint8_t on[3]);
-int colorbar_height(int scale);    /* pixels it takes */
-int colorbar_min_width(int scale); /* under this numbers may touch */
-/* Fills width x colorbar_height(scale) pixels from (x, y): background, bar, ticks, text. */
+int colorbar_height(const colorbar *bar, int scale); /* pixels it takes; NULL: one without lines */
+int colorbar_min_width(int scale);                   /* under this numbers may touch */
+/* Fills width x colorbar_height pixels from (x, y): background, bar, ticks, text. */
 void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar *bar);
 /* Ticks at 1, 2 or 5 times a power of ten: at most max of them into ticks, rising; returns their number. */
 size_t colorbar_ticks(const colorbar *bar, double *ticks, size_t max);

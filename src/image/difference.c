@@ -88,7 +88,7 @@ noc_status noc_image_difference(const noc_image *x, const noc_image *r, const no
     int scale = NOC_MAX(x->width / 640, 1);
     bool picture = p->part != NOC_CHANNEL_LEGEND, below = p->part != NOC_CHANNEL_PICTURE;
     canvas c = { .width = below ? NOC_MAX(x->width, colorbar_min_width(scale)) : x->width,
-                 .height = (picture ? x->height : 0) + (below ? colorbar_height(scale) : 0) };
+                 .height = (picture ? x->height : 0) + (below ? colorbar_height(NULL, scale) : 0) };
     c.rgb = noc_alloc_large((size_t)c.width * (size_t)c.height, 3);
     if (!c.rgb)
         return noc_error(log, NOC_ERR_MEMORY, "difference: no memory for %d x %d pixels", c.width, c.height);

@@ -264,7 +264,7 @@ void legend_free(legend *l) { free(l->seen); }
 
 int legend_height(const legend *l) {
     int rows = l->columns ? (l->count + l->columns - 1) / l->columns : 0;
-    return l->seen ? l->scale * (2 * MARGIN + TEXT_HEIGHT + GAP + rows * LINE) : colorbar_height(l->scale);
+    return l->seen ? l->scale * (2 * MARGIN + TEXT_HEIGHT + GAP + rows * LINE) : colorbar_height(&l->bar, l->scale);
 }
 
 double legend_reach(const noc_channel *c) {
@@ -280,7 +280,7 @@ double legend_reach(const noc_channel *c) {
 /* Labels without names and vectors have no bar: what stands for a number that is none is said instead. */
 void legend_draw(const legend *l, canvas *c, int y) {
     const noc_channel *channel = l->channel;
-    int scale = l->scale, middle = y + (colorbar_height(scale) - TEXT_HEIGHT * scale) / 2;
+    int scale = l->scale, middle = y + (colorbar_height(NULL, scale) - TEXT_HEIGHT * scale) / 2;
     char grey[64] = "grey: none";
     double reach = legend_reach(channel);
     if (reach > 0)

@@ -33,7 +33,7 @@ static shown show(const noc_channel *c, double low, double high) {
     shown s;
     assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ low, high }, &s.rgb, &s.width, &s.height, NULL),
                      NOC_OK);
-    assert_true(s.width == W && s.height == H + colorbar_height(1));
+    assert_true(s.width == W && s.height == H + colorbar_height(NULL, 1));
     return s;
 }
 
@@ -123,7 +123,7 @@ static void parts(void **state) {
         assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ .part = kinds[i] }, &s[i].rgb, &s[i].width,
                                               &s[i].height, NULL),
                          NOC_OK);
-    assert_true(s[1].height == H && s[2].height == colorbar_height(1) && s[0].height == H + s[2].height);
+    assert_true(s[1].height == H && s[2].height == colorbar_height(NULL, 1) && s[0].height == H + s[2].height);
     assert_memory_equal(s[0].rgb, s[1].rgb, (size_t)3 * W * H);
     assert_memory_equal(s[0].rgb + 3 * W * H, s[2].rgb, (size_t)3 * W * s[2].height);
     noc_bar bar;
@@ -173,6 +173,34 @@ static void other_scales(void **state) {
     }
     noc_channel_destroy(lin);
     noc_channel_destroy(log_);
+}
+
+/* Pixels of letters in a legend between two rows and two columns. */
+static int letters(const shown *s, int y0, int y1, int x0, int x1) {
+    int count = 0;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++)
+            count += s->rgb[3 * (y * s->width + x)] == 224;
+    return count;
+}
+
+/* A bar with lines says both of its ends, and has a second row for numbers that would touch others. */
+static void numbers_of_lines(void **state) {
+    (void)state;
+    static const noc_isolines lines[] = { { { 5, 20 }, .count = 2 }, { { 5, 5.3, 20 }, .count = 3 } };
+    const colorbar bar = { .line_count = 1 };
+    int top = colorbar_height(NULL, 1) - 6, bottom = colorbar_height(&bar, 1) - 6;
+    noc_channel *c = ramp(NOC_CHANNEL_LOG, 0.6f, 1);
+    for (int i = 0; i < 2; i++) {
+        shown s;
+        const noc_channel_params p = { 1, 300, .isolines = lines[i], .part = NOC_CHANNEL_LEGEND };
+        assert_int_equal(noc_channel_to_srgb8(c, &p, &s.rgb, &s.width, &s.height, NULL), NOC_OK);
+        assert_int_equal(s.height, bottom + 6);
+        assert_true(letters(&s, top - TEXT_HEIGHT, top, 0, 40) && letters(&s, top - TEXT_HEIGHT, top, W - 40, W));
+        assert_int_equal(letters(&s, top, bottom, 0, W) > 0, i);
+        free(s.rgb);
+    }
+    noc_channel_destroy(c);
 }
 
 /* Lines lie where numbers pass their values, through noise too, and not at steps; the legend's bar is wide enough. */
@@ -390,7 +418,7 @@ static void files(void **state) {
     assert_null(memmem(text, n, "cd/m2", 5));
     assert_int_equal(noc_channel_write(c, png, NULL, NULL, NULL), NOC_OK);
     read = noc_image_read(png, NULL, &linear);
-    assert_true(read && !linear && read->width == W && read->height == H + colorbar_height(1));
+    assert_true(read && !linear && read->width == W && read->height == H + colorbar_height(NULL, 1));
     assert_string_equal(read->channel, "ramp");
     noc_image_destroy(read);
     noc_channel_destroy(c);
@@ -446,6 +474,7 @@ int main(void) {
         cmocka_unit_test(parts),
         cmocka_unit_test(other_scales),
         cmocka_unit_test(isolines),
+        cmocka_unit_test(numbers_of_lines),
         cmocka_unit_test(isolines_in_words),
         cmocka_unit_test(bars_settle),
         cmocka_unit_test(files),
