@@ -49,6 +49,15 @@ static void add_picture(words *list, const out_view *v) {
     words_add(list, text);
 }
 
+look out_look(const out_view *v) {
+    look l = *v->look;
+    if (v->bar && v->bar->high > v->bar->low && look_has_bar(&l) && l.channel.low == l.channel.high) {
+        l.channel.low = v->bar->low;
+        l.channel.high = v->bar->high;
+    }
+    return l;
+}
+
 char *out_command(const out_view *v) {
     words list = { 0 };
     size_t count = 0;
@@ -65,7 +74,8 @@ char *out_command(const out_view *v) {
     add_numbers(&list, "--target", v->camera->target, 3);
     add_numbers(&list, "--fov", &v->camera->fov_deg, 1);
     add_picture(&list, v);
-    char **own = look_words(v->look, v->source->recipe, info.environment_width > 0, &count);
+    look shown = out_look(v);
+    char **own = look_words(&shown, v->source->recipe, info.environment_width > 0, &count);
     add_all(&list, own, count);
     words_add(&list, "-o");
     words_add(&list, "night.png");

@@ -12,8 +12,12 @@ typedef struct out_view {
     const look *look;
     const noc_camera *camera;
     int width, height;
-    uint64_t frames; /* in its mean */
+    uint64_t frames;    /* in its mean */
+    const noc_bar *bar; /* of its newest picture; NULL, or high 0: that has none */
 } out_view;
+
+/* Its look, with the ends of the colour bar that were found for it, so that colours stay what they are. */
+look out_look(const out_view *view);
 
 /* "nocturne render INPUTS ... -o night.png", for a POSIX shell: only what differs from what the inputs, their recipe
  * and the program say already. The camera stands in the scene's local frame, with all of its digits, so that the pixels

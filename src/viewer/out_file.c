@@ -51,7 +51,7 @@ static bool write_file(const out_view *v, noc_view *of, const char *path, noc_lo
                          .camera = *v->camera,
                          .render = look_params(v->look, v->width, v->height),
                          .display = v->look->display,
-                         .channel = v->look->channel,
+                         .channel = out_look(v).channel,
                          .show = v->look->show,
                          .preset = v->look->preset,
                          .frames = v->frames,

@@ -15,7 +15,8 @@ out_view session_view(const session *s, int which) {
                        .camera = &s->mover.camera,
                        .width = s->width ? s->width : 1280,
                        .height = s->height ? s->height : 720,
-                       .frames = of->stats.frames };
+                       .frames = of->stats.frames,
+                       .bar = &of->bar };
 }
 
 /* false: there is no memory to send it. */

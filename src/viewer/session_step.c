@@ -65,7 +65,9 @@ bool session_complete(session *s, int which) {
 static void publish(session *s, int which, bool moves, bool lossless) {
     double now = session_now();
     panes_picture what = { moves, lossless, s->input, now, &s->mover.camera };
+    noc_bar *first = &s->panes.pane[0].bar, before = *first;
     noc_status status = panes_publish(&s->panes, which, &what);
+    s->told_less = s->told_less || first->low != before.low || first->high != before.high; /* the command has it */
     if (status && status != NOC_ERR_CANCELLED)
         session_note(s, "error", "there is no memory for a picture");
     s->sent[which] = now;

@@ -171,6 +171,18 @@ def test_panes_have_one_bar(p):
     c.close()
 
 
+def test_the_command_has_the_range_that_was_found(p):
+    c = enter(p, 160, 90)
+    c.say("set", name="show", value="illuminance")
+    legend = said(c, "stats", lambda m: m.get("legend"))["legend"]
+    command = said(c, "state", lambda m: "--show-range" in m["command"])["command"].split()
+    ends = command[command.index("--show-range") + 1].split(",")
+    assert [float(end) for end in ends] == [legend["low"], legend["high"]], (command, legend)
+    c.say("set", name="show", value="picture")
+    said(c, "state", lambda m: "--show" not in m["command"])
+    c.close()
+
+
 def test_a_mode_to_open_with(p):
     q = Program(*CITY, "--show", "illuminance", "--show-range", "1,50", "--isolines", "5,10")
     c = Client(q)

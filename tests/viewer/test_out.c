@@ -88,6 +88,44 @@ static void a_command_line_makes_the_same_pixels(void **state) {
     end_city(&c);
 }
 
+/* What the program would write. */
+static noc_channel_params written;
+static noc_status write_nothing(void *user, const viewer_picture *p, const char *path, noc_log *log) {
+    (void)user, (void)log;
+    written = p->channel;
+    FILE *f = fopen(path, "w");
+    return f && fputs("x", f) >= 0 && !fclose(f) ? NOC_OK : NOC_ERR_IO;
+}
+
+static void a_file_has_the_range_that_was_found(void **state) {
+    state_city c;
+    set_city(&c, false);
+    unsigned char *data;
+    size_t size;
+    char why[300];
+    const noc_bar bar = { .low = 0.5, .high = 40, .logarithmic = true };
+    c.source.write = write_nothing;
+    start_city(&c);
+    look l = look_default(&c.source);
+    set_look(&l, "show", "illuminance");
+    out_view v = { &c.source, c.world, &l, &city_camera, 60, 40, 3, &bar };
+    assert_true(out_picture(&v, NULL, false, &data, &size, why, sizeof(why)));
+    free(data);
+    assert_true(written.low == 0.5 && written.high == 40);
+    char *line = out_command(&v);
+    assert_non_null(strstr(line, "--show-range 0.5,40"));
+    free(line);
+    set_look(&l, "show-range", "1,50"); /* what is set stays */
+    line = out_command(&v);
+    assert_non_null(strstr(line, "--show-range 1,50"));
+    free(line);
+    set_look(&l, "show", "class");
+    line = out_command(&v);
+    assert_null(strstr(line, "--show-range"));
+    free(line);
+    end_city(&c);
+}
+
 /* Mean of the squared differences, over the mean square. */
 static double unlike(const noc_image *a, const noc_image *b) {
     double sum = 0, all = 0;
@@ -250,6 +288,7 @@ static void a_recipe_keeps_what_its_recipe_says(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_has_the_range_that_was_found),
         cmocka_unit_test(a_recipe_makes_the_same_picture),
         cmocka_unit_test(a_recipe_keeps_what_its_recipe_says),
         cmocka_unit_test(a_command_line_makes_the_same_pixels),
