@@ -63,12 +63,22 @@ static void set_method(look *l, const char *method, const char *candidates) {
         look_set(l, "candidates", candidates, why, sizeof(why));
 }
 
+/* All panes of a difference show one kind of numbers: where the reference cannot, they begin with the picture. */
+static void let_reference_show(look *l) {
+    look other = *l;
+    char why[128];
+    if (!look_set(&other, "method", "reference", why, sizeof(why)))
+        look_set(l, "show", "picture", why, sizeof(why));
+}
+
 noc_status panes_set_layout(panes *p, wire_layout layout) {
     int count = panes_of(layout);
     if (layout == WIRE_METHODS && p->layout != layout)
         p->own = p->pane[0].look;
     if (p->layout == WIRE_METHODS && p->layout != layout)
         p->pane[0].look = p->own;
+    if (layout == WIRE_DIFFERENCE && p->layout != layout)
+        let_reference_show(&p->pane[0].look);
     for (int i = 0; i < WIRE_PANES; i++) {
         bool viewed = i < count && !(layout == WIRE_DIFFERENCE && i == 2);
         if (i >= count || !viewed) {
@@ -109,14 +119,21 @@ bool panes_set(panes *p, int which, const char *name, const char *value, panes_n
         snprintf(why, size, "there is no pane %d", which);
         return false;
     }
-    for (int i = which < 0 ? 0 : which; i < (which < 0 ? p->count : which + 1); i++) {
-        look before = p->pane[i].look;
-        if (!look_set(&p->pane[i].look, name, value, why, size))
+    bool of_bar = viewer_among(name, of_bars, sizeof(of_bars) / sizeof(*of_bars));
+    bool all = which < 0 || (of_bar && p->layout == WIRE_DIFFERENCE); /* which shows one kind of numbers */
+    look next[WIRE_PANES];
+    int first = all ? 0 : which, end = all ? p->count : which + 1;
+    for (int i = first; i < end; i++) {
+        next[i] = p->pane[i].look;
+        if (!look_set(&next[i], name, value, why, size))
             return false;
-        if (viewer_among(name, of_bars, sizeof(of_bars) / sizeof(*of_bars)))
-            p->pane[i].bar = (noc_bar){ 0 };
-        panes_need now = need_of(&before, &p->pane[i].look);
+    }
+    for (int i = first; i < end; i++) {
+        panes_need now = need_of(&p->pane[i].look, &next[i]);
         *need = now > *need ? now : *need;
+        p->pane[i].look = next[i];
+        if (of_bar)
+            p->pane[i].bar = (noc_bar){ 0 };
     }
     return true;
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The viewer's page in Chromium, as hands use it: what they do is seen in the picture, and the console is silent."""
+import json
 import re
 
 import browser
@@ -101,8 +102,13 @@ class Page(Opened):
         page.key('Enter')
         page.wait("viewer.state.panes[0].values.isolines === '7.5,12,40'")
         assert '--isolines 7.5,12,40' in state(page, 'command')
-        shown = "[...document.querySelectorAll('#legend .ticks span')].map((one) => one.textContent).join(' ')"
+        shown = "[...document.querySelectorAll('#legend .ticks span')].map((one) => one.textContent).slice(2).join(' ')"
         page.wait(f"['7.5', '7.5 12', '7.5 12 40'].includes({shown})")
+        page.evaluate("viewer.set('show-range', '1,300')")
+        page.evaluate("viewer.set('isolines', '5,5.2,5.4,20')")
+        ticks = "[...document.querySelectorAll('#legend .ticks span')].map((one) => one.textContent + one.className)"
+        wanted = ['1', '300', '5', '5.2second', '5.4bare', '20']  # no line without a tick, and both ends
+        page.wait(f"JSON.stringify({ticks}) === '{json.dumps(wanted, separators=(',', ':'))}'")
         page.evaluate("viewer.set('isolines', '0')")
         blur(page)
         page.evaluate("document.querySelector('#modes button').click()")
@@ -255,26 +261,54 @@ class Page(Opened):
         page.press('#layouts button[data-name=difference]')
         page.wait("viewer.state.layout === 'difference'")
         assert page.evaluate("document.querySelectorAll('.picture')[2].dataset.n !== 'old'"), 'a picture of RIS is left'
-        page.wait("[...document.querySelectorAll('.caption')].some((one) => one.textContent.includes('RMSE'))", 60)
+        page.evaluate("(viewer.told = [], viewer.on('stats', ({ pane, frames }) => pane === 2 && viewer.told.push("
+                      "[frames, document.querySelectorAll('.caption')[2].textContent])), 0)")
+        page.evaluate("viewer.set('seed', '5')")
+        page.wait("viewer.told[0]?.[0] < 16")
+        page.wait("document.querySelectorAll('.caption')[2].textContent.includes('RMSE')", 60)
+        told = page.evaluate('viewer.told')
+        early = [text for frames, text in told if frames < 16]
+        assert early and all('too early' in text and 'MSE' not in text for text in early), told
         assert page.evaluate("viewer.state.panes[0].values.smooth === 'true'")
         page.wait("/early, after \\d+ frame/.test(document.querySelectorAll('.caption')[2].textContent)")
         said = page.evaluate("[document.querySelectorAll('.caption')[2].textContent, viewer.stats[2].bias]")
         bias = float(re.search(r'bias (-?[\d.,]+) %', said[0])[1].replace(',', ''))
         assert abs(bias - 100 * (said[1] - 1)) < 0.6 + 0.1 * abs(bias), said
-        page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        page.wait("document.querySelectorAll('#legend-difference .ticks span').length > 1")
         low, high = page.evaluate('[viewer.stats[2].legend.low, viewer.stats[2].legend.high]')
         assert low == -high and high > 0, (low, high)
-        assert page.evaluate("document.querySelector('#legend .handle').offsetParent === null")
+        assert page.evaluate("document.querySelector('#legend-difference .handle').offsetParent === null")
+        self.modes_of_a_difference(page)
         narrow = opened(self.machine, self.served.link, width=390, height=844, phone=True)
         narrow.evaluate("viewer.connection.send('layout', { name: 'difference' })")
-        narrow.wait("document.querySelectorAll('#legend .ticks span').length > 1", 60)
+        narrow.wait("document.querySelectorAll('#legend-difference .ticks span').length > 1", 60)
         box = narrow.evaluate("(({ left, right, bottom }) => [left, right, innerHeight - bottom])"
-                              "(document.getElementById('legend').getBoundingClientRect())")
+                              "(document.getElementById('legend-difference').getBoundingClientRect())")
         assert box[0] >= 0 and box[1] <= 390 and box[2] >= 0, box
         narrow.close()
         page.press('#layouts button[data-name=single]')
         page.wait("document.querySelectorAll('.pane').length === 1")
         assert state(page, 'panes[0].values.method') == method, 'all methods have changed this look'
+
+    def modes_of_a_difference(self, page):
+        """Picture and reference show the same kind of numbers, with their legend; the difference keeps its own."""
+        page.evaluate("document.querySelector('#modes button[data-name=illuminance]').click()")
+        page.wait("[0, 1].every((i) => viewer.stats[i]?.legend?.unit === 'lx')", 60)
+        legends = '''(() => {
+            const box = (one) => one.getBoundingClientRect();
+            const within = (own, pane) => own.left >= pane.left && own.right <= pane.right && own.top >= pane.top;
+            const pane = (i) => box(document.querySelector(`.pane[data-pane="${i}"]`));
+            const one = (id) => document.getElementById(id);
+            return [one('legend').textContent.includes('lx'), one('legend-difference').textContent.includes('cd/m'),
+                within(box(one('legend')), pane(0)), within(box(one('legend-difference')), pane(2))];
+        })()'''
+        assert page.evaluate(legends) == [True] * 4, page.evaluate(legends)
+        page.evaluate("document.querySelector('#modes button[data-name=picture]').click()")
+        page.wait("[0, 1].every((i) => viewer.state.panes[i].values.show === 'picture' && !viewer.stats[i]?.legend)")
+        page.wait("document.getElementById('legend').hidden && !document.getElementById('legend-difference').hidden")
+        page.evaluate("document.querySelector('#modes button[data-name=lights]').click()")
+        page.wait("document.querySelector('.toast.error') !== null")  # the reference has none
+        assert page.evaluate("viewer.state.panes.every(({ values }) => values.show === 'picture')")
 
     def test_saves(self):
         page = self.page

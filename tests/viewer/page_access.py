@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The page for who does not see, point or have much room."""
-from leaf import Opened, blur, camera, opened, rests, run, state
+from leaf import Opened, blur, camera, opened, press_text, rests, run
 
 
 class Access(Opened):
@@ -76,6 +76,59 @@ class Access(Opened):
             .map((one) => one.getAttribute('aria-live') ?? one.getAttribute('role'))""")
         assert roles == ['polite', 'polite', 'status'], roles
 
+    def test_escape_closes_from_everywhere(self):
+        """What is begun is left first, then what is open is closed: that with the focus, else the newest."""
+        page = self.page
+        shut = "document.getElementById('%s').hidden"
+        for _ in range(2):
+            page.click(320, 330)
+            page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+            assert page.evaluate("document.activeElement.id") == 'stage'
+            page.key('Escape')
+            page.wait(shut % 'right')
+        page.viewport(1000, 420)  # which has room for both
+        page.key('p')
+        page.key('b')
+        blur(page)
+        page.key('Escape')
+        page.wait(f"{shut % 'right'} && !({shut % 'left'})")
+        page.key('Escape')
+        page.wait(shut % 'left')
+        page.viewport(640, 420)
+        page.key('t')
+        press_text(page, 'Polygon on map')
+        page.wait("document.querySelector('.map-body').innerText.includes('Click the corners')")
+        page.evaluate("document.getElementById('stage').focus()")
+        page.key('Escape')
+        page.wait("!document.querySelector('.map-body').innerText.includes('Click the corners')")
+        assert not page.evaluate(shut % 'right')
+        page.key('h')
+        page.wait("document.body.classList.contains('bare')")
+        page.key('Escape')
+        page.wait("!document.body.classList.contains('bare')")
+        page.key('Escape')
+        page.wait(shut % 'right')
+
+    def test_an_answer_has_the_focus(self):
+        page = self.page
+        page.evaluate("viewer.goTo('aerial')")
+        page.wait("viewer.state.camera.name === 'aerial'")
+        rests(page)
+        page.key('t')
+        page.evaluate("[...document.querySelectorAll('.panel button')].find((one) => one.textContent === 'Middle')"
+                      ".focus()")
+        page.key('Enter')
+        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        assert page.evaluate("document.activeElement.className") == 'answer'
+        for _ in range(2):  # to its first row or button, whatever pictures and answers come
+            page.key('Tab')
+        assert page.evaluate("document.activeElement.closest('.answer') !== null")
+        page.key('Escape')
+        page.wait("document.getElementById('right').hidden")
+        page.evaluate("viewer.goTo('street')")
+        page.wait("viewer.state.camera.name === 'street'")
+        rests(page)
+
     def test_text_has_contrast(self):
         """All text that is seen, over panels on a white picture, has a contrast of 4.5 to 1 at least."""
         page = self.page
@@ -96,7 +149,7 @@ class Access(Opened):
             for (const one of document.querySelectorAll('body *')) {
                 const own = [...one.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
                 const field = one.matches('input:not([type=checkbox], [type=range], [type=color]), textarea');
-                if (!(own || field) || !one.offsetParent || one.closest(':disabled, .pane, .hidden, #legend')) continue;
+                if (!(own || field) || !one.offsetParent || one.closest(':disabled, .pane, .hidden, .legend')) continue;
                 const line = [];
                 for (let at = one; at; at = at.parentElement) line.unshift(at);
                 let back = [255, 255, 255], opacity = 1;

@@ -112,6 +112,31 @@ class Places(Opened):
         assert page.evaluate("document.querySelector('.map-tip').textContent.length") > 3
         page.key('m')
 
+    def test_map_keeps_its_place(self):
+        """Closed and opened again it is as it was, until the whole city is asked for."""
+        page = self.page
+        scale = "(({ textContent, style }) => textContent + style.width)(document.querySelector('.map-scale'))"
+        page.key('m')
+        press_text(page, 'Whole city')
+        self.machine.listen(0.2)
+        whole = page.evaluate(scale)
+        page.evaluate("document.querySelector('.map').focus()")
+        for _ in range(4):
+            page.key('+')
+        page.wait(f"{scale} !== '{whole}'")
+        self.machine.listen(0.2)
+        near = page.evaluate(scale)
+        page.key('Escape')
+        page.wait("document.getElementById('right').hidden")
+        page.key('t')
+        press_text(page, 'Rectangle on map')
+        self.machine.listen(0.3)
+        assert page.evaluate(scale) == near, (whole, near)
+        page.key('Escape')
+        press_text(page, 'Whole city')
+        page.wait(f"{scale} === '{whole}'")
+        page.key('Escape')
+
     def test_settings_are_found_by_what_they_do(self):
         page = self.page
         page.key('p')

@@ -47,7 +47,7 @@ export class Ask {
         );
         this.out = el(
             'div',
-            { class: 'answer' },
+            { class: 'answer', tabindex: -1, role: 'region', 'aria-label': 'Answer' },
             el('p', { class: 'quiet', text: 'Click a place in the picture, or choose a region.' }),
         );
         drawers.add('Lights', 'right', el('div', { class: 'body' }, tools, this.out), 'T');
@@ -174,7 +174,9 @@ export class Ask {
         this.#what = words;
         this.#lit.clear();
         this.app.highlight([]);
+        const inside = this.drawers.focused();
         this.drawers.show('Lights', false);
+        if (inside) this.out.focus({ preventScroll: true }); // whose row or button may go
         this.clear.disabled = false;
         this.out.replaceChildren(el('p', { class: 'quiet', role: 'status', text: 'Asking …' }));
         this.#running = true;

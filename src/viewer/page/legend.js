@@ -1,19 +1,22 @@
 // legend.js: what the colours of a picture of numbers mean; its ends are handles, and it can be moved and folded.
 import { el, button, number, clamp } from './dom.js';
 
-const KEPT = 'nocturne legend';
 const GAP = 10; // CSS pixels around it
-const ROOM = 0.05; // of the bar, for a number
+const LOW = 220; // CSS pixels: in a pane so low it has no controls
+const APART = 4; // CSS pixels between numbers
 const STEP = 0.1; // of the room, by keys
 
 export class Legend {
     #drawn = '';
     #at = { x: 0.5, y: 0, folded: false }; // of the room that the picture leaves, from its lower left corner
 
-    constructor(root, stage, app) {
+    // kept: where the browser keeps its place; fixed: its ends are those of the numbers, and are not set.
+    constructor(root, stage, app, kept = 'nocturne legend', fixed = false) {
         this.root = root;
         this.stage = stage;
         this.app = app;
+        this.kept = kept;
+        this.fixed = fixed;
         this.title = el('div', { class: 'title' });
         this.grip = button('✥', () => {}, { 'aria-label': 'Move the legend', title: 'drag, or arrow keys' });
         this.fold = button('', () => this.#fold(!this.#at.folded), { class: 'fold' });
@@ -27,7 +30,7 @@ export class Legend {
         this.lines = el('input', {
             type: 'text',
             placeholder: '5,7.5,10,20',
-            id: 'isolines',
+            id: fixed ? null : 'isolines',
             'aria-label': 'Isolines',
             title: 'values, 5,7.5,10,20 (one: 5,), or how many at round ones; empty: none',
             on: { change: () => app.set('isolines', this.lines.value.replaceAll(/\s/g, '') || 0) },
@@ -40,20 +43,25 @@ export class Legend {
         app.on('state', () => this.show());
     }
 
-    // The pane that is edited, where it shows numbers; else that of the difference; -1: none has a legend.
+    // The pane that is edited, where it shows numbers; -1: none has a legend. A difference has one of its own.
     get pane() {
-        const pane = Math.max(this.app.editing, 0);
-        if (this.app.state?.layout === 'difference' && (pane === 2 || this.app.mode(pane).name === 'picture')) return 2;
+        const edited = Math.max(this.app.editing, 0);
+        const pane = this.beside && edited === 2 ? 0 : edited;
         return this.app.mode(pane).name === 'picture' ? -1 : pane;
+    }
+
+    get beside() {
+        return this.app.state?.layout === 'difference';
     }
 
     get legend() {
         return this.app.stats[this.pane]?.legend ?? null;
     }
 
-    // Its ends are those of the numbers, and are not set.
-    get fixed() {
-        return this.app.state?.layout === 'difference' && this.pane === 2;
+    // Beside a difference, whose numbers are others, it stays in its own pane.
+    get #box() {
+        const own = this.beside ? this.stage.querySelector(`.pane[data-pane='${this.pane}']`) : null;
+        return (own ?? this.stage).getBoundingClientRect();
     }
 
     show() {
@@ -62,7 +70,7 @@ export class Legend {
         const values = this.app.values();
         this.root.hidden = !legend;
         if (this.root.hidden) return;
-        const text = JSON.stringify([legend, mode.name, fixed, values.isolines, values['show-range']]);
+        const text = JSON.stringify([legend, mode.name, this.beside, this.pane, values.isolines, values['show-range']]);
         if (text === this.#drawn) return;
         this.#drawn = text;
         const unit = legend.unit && !legend.title.includes('[') ? ` [${legend.unit}]` : '';
@@ -89,7 +97,7 @@ export class Legend {
     // By its head, with mouse, finger or arrow keys. What is beside head and handles goes through to the picture.
     #movable() {
         try {
-            const kept = JSON.parse(localStorage.getItem(KEPT) ?? '{}');
+            const kept = JSON.parse(localStorage.getItem(this.kept) ?? '{}');
             for (const side of ['x', 'y']) if (kept[side] >= 0 && kept[side] <= 1) this.#at[side] = kept[side];
             this.#at.folded = kept.folded === true;
         } catch {
@@ -130,10 +138,8 @@ export class Legend {
 
     #room() {
         const side = (picture, own) => Math.max(picture - own - 2 * GAP, 0);
-        return {
-            x: side(this.stage.clientWidth, this.root.offsetWidth),
-            y: side(this.stage.clientHeight, this.root.offsetHeight),
-        };
+        const { width, height } = this.#box;
+        return { x: side(width, this.root.offsetWidth), y: side(height, this.root.offsetHeight) };
     }
 
     #move(x, y) {
@@ -143,11 +149,14 @@ export class Legend {
     }
 
     #place() {
-        const box = this.stage.getBoundingClientRect();
+        const box = this.#box;
+        this.root.style.maxWidth = `${box.width - 2 * GAP}px`;
+        this.root.classList.toggle('low', box.height < LOW);
         const room = this.#room();
         this.root.style.left = `${box.left + GAP + this.#at.x * room.x}px`;
         this.root.style.bottom = `${window.innerHeight - box.bottom + GAP + this.#at.y * room.y}px`;
         this.labels.classList.toggle('long', this.labels.scrollHeight > this.labels.clientHeight);
+        this.#spread();
     }
 
     #fold(folded) {
@@ -163,7 +172,7 @@ export class Legend {
 
     #keep() {
         try {
-            localStorage.setItem(KEPT, JSON.stringify(this.#at));
+            localStorage.setItem(this.kept, JSON.stringify(this.#at));
         } catch {
             // the browser keeps nothing
         }
@@ -189,13 +198,12 @@ export class Legend {
         this.auto.setAttribute('aria-pressed', !values['show-range'] || values['show-range'] === 'auto');
         if (document.activeElement !== this.lines)
             this.lines.value = values.isolines === '0' ? '' : (values.isolines ?? '');
-        let last = -1;
-        const apart = (value) => this.#part(legend, value) - last > ROOM && (last = this.#part(legend, value)) >= 0;
-        const within = (legend.isolines ?? []).filter(
-            (value) => value >= legend.low && value <= legend.high && apart(value),
-        );
+        const { low, high } = legend;
+        const within = (legend.isolines ?? []).filter((value) => value > low && value < high);
+        const between = within.length ? within : ticks(legend).filter((value) => value > low && value < high);
+        this.scale.classList.toggle('two', within.length > 0);
         this.ticks.replaceChildren(
-            ...(within.length ? within : ticks(legend)).map((value) => {
+            ...[low, high, ...between].map((value) => {
                 const tick = el('span', { text: number(value) });
                 tick.style.left = `${this.#part(legend, value) * 100}%`;
                 return tick;
@@ -207,6 +215,21 @@ export class Legend {
             handle.setAttribute('aria-valuetext', `${number(end)} ${legend.unit ?? ''}`);
             handle.style.left = `${i * 100}%`;
         });
+    }
+
+    // Both ends have their numbers, others where they touch none. Isolines have a second row, and always a tick.
+    #spread() {
+        const rows = [[], []];
+        const two = this.scale.classList.contains('two');
+        for (const tick of this.ticks.children) {
+            const { left, right } = tick.getBoundingClientRect();
+            const row = rows.findIndex((taken) =>
+                taken.every((other) => left > other.right + APART || right < other.left - APART),
+            );
+            tick.classList.toggle('second', two && row === 1);
+            tick.classList.toggle('bare', row < 0 || (!two && row === 1));
+            rows[row]?.push({ left, right });
+        }
     }
 
     #part(legend, value) {
@@ -266,7 +289,18 @@ export class Legend {
     }
 }
 
-// Round values between the ends, both of them where they are far from the others.
+// That of a difference, over the pane that shows it.
+export class DifferenceLegend extends Legend {
+    constructor(root, stage, app) {
+        super(root, stage, app, 'nocturne legend of differences', true);
+    }
+
+    get pane() {
+        return this.beside ? 2 : -1;
+    }
+}
+
+// Round values between the ends.
 export function ticks(legend) {
     const { low, high, log } = legend;
     const found = [];

@@ -5,7 +5,7 @@ import { Panes } from './panes.js';
 import { Input, MOVING } from './input.js';
 import { Drawers, Settings } from './panels.js';
 import { Modes } from './modes.js';
-import { Legend } from './legend.js';
+import { Legend, DifferenceLegend } from './legend.js';
 import { CityMap } from './map.js';
 import { Ask } from './ask.js';
 import { Layouts } from './compare.js';
@@ -30,9 +30,10 @@ const drawers = new Drawers($('tabs'), $('left'), $('right'), () => panes.draw()
 new Settings(app, drawers, panes);
 new Modes($('modes'), app);
 new Legend($('legend'), $('stage'), app);
+new DifferenceLegend($('legend-difference'), $('stage'), app);
 const map = new CityMap(app, drawers, (light) => ask.lamp(light));
 const ask = new Ask(app, drawers, map, panes, input);
-new Photo(app, drawers, panes, input);
+const photo = new Photo(app, drawers, panes, input);
 const places = new Places(app, drawers, new Find(app, drawers, ask));
 const out = new Out(app, drawers, places, $('text'));
 const layouts = new Layouts($('layouts'), app, panes);
@@ -145,14 +146,22 @@ function headlight() {
     app.set('method', method === 'headlight' ? lit : 'headlight');
 }
 
+// Escape, wherever the focus is: what was begun is left, then what is open is closed.
+function letGo() {
+    const bare = document.body.classList.contains('bare');
+    document.body.classList.remove('bare');
+    return bare || ask.cancelTool() || map.cancel() || photo.cancel() || drawers.back();
+}
+
 function fullScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
     else document.documentElement.requestFullscreen?.().catch(() => {});
 }
 
 document.addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event)) return;
-    if (event.key === 'Escape' && ask.cancelTool()) return;
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === 'Escape' && !document.querySelector('dialog[open]') && letGo()) event.preventDefault();
+    if (typing(event)) return;
     const act = ACTS.find(([key]) => key === (event.key.length === 1 ? event.key.toLowerCase() : event.key));
     if (!act || event.repeat) return;
     event.preventDefault();

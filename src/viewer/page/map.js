@@ -23,6 +23,7 @@ export class CityMap {
     #asked = false;
     #timer = 0;
     #fitted = false;
+    #bounds = ''; // of the city that is shown
     #hover = 0;
     #naming = 0; // the question for a name
 
@@ -72,7 +73,7 @@ export class CityMap {
         this.root = el('div', { class: 'body map-body' }, tools, box, marks, this.hint);
         drawers.add('Map', 'right', this.root, 'M', () => this.#seen());
         this.#listen();
-        app.on('welcome', () => ((this.#asked = false), (this.#fitted = false), this.#seen()));
+        app.on('welcome', () => this.#welcome());
         app.on('shown', () => (this.follow.checked && this.#following(), this.redraw()));
         app.on('highlight', () => this.redraw());
         new ResizeObserver(() => (this.#fitted || this.fit(), this.redraw())).observe(this.canvas);
@@ -88,6 +89,13 @@ export class CityMap {
         this.drawing = kind && { kind, points: [], done };
         this.#say();
         this.redraw();
+    }
+
+    // false: nothing is being drawn.
+    cancel() {
+        const some = this.open && this.drawing !== null;
+        if (some) this.draw(null);
+        return some;
     }
 
     fit() {
@@ -115,9 +123,18 @@ export class CityMap {
             'A click goes there, a click on a light asks about it. Drag moves the map, the wheel zooms.';
     }
 
+    // Another city is seen as a whole first; of the same one the map stays as it was.
+    #welcome() {
+        const bounds = JSON.stringify(this.app.scene.bounds);
+        if (bounds !== this.#bounds) this.#fitted = false;
+        this.#bounds = bounds;
+        this.#asked = false;
+        this.#seen();
+    }
+
     #seen() {
         if (!this.open) return;
-        this.fit();
+        if (!this.#fitted) this.fit();
         if (!this.#asked) this.#ask();
     }
 
@@ -324,7 +341,6 @@ export class CityMap {
         else if (event.key === '-') this.zoom(-1);
         else if (event.key === 'Enter') this.drawing ? this.#enter() : this.goTo(this.centre);
         else if (event.key === ' ' && this.drawing) this.drawing.points.push([...this.centre]);
-        else if (event.key === 'Escape' && this.drawing) this.draw(null);
         else return;
         event.preventDefault();
         event.stopPropagation();

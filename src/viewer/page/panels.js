@@ -12,7 +12,7 @@ export class Drawers {
         this.changed = changed;
         this.sides = { left, right };
         this.open = { left: null, right: null };
-        document.addEventListener('keydown', (event) => this.#escape(event));
+        this.newest = 'right'; // the side that was opened last
     }
 
     // A panel: name of its tab, side, element, and what is done when it is seen.
@@ -47,8 +47,9 @@ export class Drawers {
     show(name, focus = true) {
         const { side, panel, seen } = this.#panels.get(name);
         if (window.matchMedia('(max-width: 900px)').matches) this.close(side === 'left' ? 'right' : 'left');
-        this.close(side);
+        if (!this.isOpen(name)) this.close(side);
         this.open[side] = name;
+        this.newest = side;
         this.sides[side].hidden = false;
         panel.hidden = false;
         this.#told(side);
@@ -75,10 +76,18 @@ export class Drawers {
         this.changed();
     }
 
-    #escape(event) {
-        if (event.key !== 'Escape' || event.defaultPrevented || document.querySelector('dialog[open]')) return;
-        const within = event.target instanceof Element ? event.target.closest('.drawer')?.id : null;
-        if (within) this.close(within);
+    // The side whose panel has the focus; undefined: none.
+    focused() {
+        return document.activeElement?.closest('.drawer')?.id;
+    }
+
+    // Closes the panel that has the focus, else the newest one. false: none is open.
+    back() {
+        const other = this.newest === 'left' ? 'right' : 'left';
+        const side = this.focused() ?? (this.open[this.newest] ? this.newest : other);
+        const some = this.open[side] !== null;
+        this.close(side);
+        return some;
     }
 }
 

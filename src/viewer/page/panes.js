@@ -3,7 +3,8 @@ import { el, clamp, number } from './dom.js';
 import { project } from './camera.js';
 
 const MOST_PIXELS = 1920 * 1080; // of all panes together, asked for
-const ENOUGH = 64; // frames after which a difference is hardly noise any more
+const LEAST = 16; // frames of both under which figures of a difference are those of noise
+const ENOUGH = 64; // after so many they hardly are any more
 
 export class Panes {
     panes = [];
@@ -192,14 +193,23 @@ export class Panes {
         this.panes.forEach(({ caption, root }, index) => {
             const stats = this.app.stats[index];
             const says = [this.states[index]?.caption ?? '', index === 0 && this.held?.frozen ? 'held' : ''];
-            if (stats?.rmse !== undefined) says.push(`RMSE ${number(stats.rmse)} cd/m²`);
-            if (stats?.relmse !== undefined) says.push(`relMSE ${number(stats.relmse)}`);
-            if (stats?.bias !== undefined) says.push(`bias ${number(100 * (stats.bias - 1), 2)} %`);
-            if (stats?.rmse !== undefined && stats.frames < ENOUGH)
-                says.push(`early, after ${stats.frames} ${stats.frames === 1 ? 'frame' : 'frames'}`);
+            if (stats?.rmse !== undefined) says.push(...this.#difference(stats));
             caption.textContent = this.panes.length > 1 ? says.filter((one) => one).join(' · ') : '';
             root.classList.toggle('edited', this.panes.length > 1 && this.app.editing === index);
         });
+    }
+
+    // Its figures, as soon as they are of more than noise, or of all frames that there will be.
+    #difference({ rmse, relmse, bias, frames }) {
+        const last = Number(this.app.values(0).frames) || Infinity;
+        const least = Math.min(LEAST, last);
+        if (frames < least) return [`too early for figures: ${frames} of ${least} frames`];
+        return [
+            `RMSE ${number(rmse)} cd/m²`,
+            `relMSE ${number(relmse)}`,
+            `bias ${number(100 * (bias - 1), 2)} %`,
+            frames < ENOUGH ? `early, after ${frames} ${frames === 1 ? 'frame' : 'frames'}` : '',
+        ];
     }
 
     async #take(picture) {

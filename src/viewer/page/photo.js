@@ -100,6 +100,13 @@ export class Photo {
         this.panes.draw();
     }
 
+    // Leaves the pairs; those that are set stay. false: none are being set.
+    cancel() {
+        const some = this.#pairing;
+        if (some) this.#pair(false);
+        return some;
+    }
+
     #clicked(hit) {
         const rect = this.panes.rect(hit.pane),
             own = this.#rect(hit.pane);
