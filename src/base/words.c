@@ -126,7 +126,7 @@ static int distance(const char *a, const char *b) {
     int rows[3][MAX + 1];
     size_t n = strlen(a), m = strlen(b);
     if (n > MAX || m > MAX)
-        return MAX;
+        return (int)(n > m ? n : m);
     for (size_t j = 0; j <= m; j++)
         rows[0][j] = (int)j;
     for (size_t i = 1; i <= n; i++) {

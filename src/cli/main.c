@@ -2,6 +2,8 @@
 #include "cli.h"
 #include "viewer/viewer.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,7 +90,17 @@ static bool enough_stack(void) {
     return false;
 }
 
+/* Where the caller has closed a standard descriptor, the next file that is opened would get its number, and what is
+ * printed would go into it. It is opened so that to use it fails. */
+static void keep_standard_descriptors(void) {
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        while (fcntl(fd, F_GETFD) < 0 && errno == EBADF)
+            if (open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0)
+                return;
+}
+
 int main(int argc, char **argv) {
+    keep_standard_descriptors();
     cli_called(argv[0]);
     if (!enough_stack())
         return CLI_FAILURE;

@@ -25,6 +25,7 @@ typedef struct view_args {
     const char *address, *token;
     int port, clients;
     bool open;
+    bool unsaid; /* the link could not be written */
     view_lines *lines;
 } view_args;
 
@@ -183,8 +184,8 @@ static void tell(void *user, noc_log_level level, const char *text) {
 }
 
 static bool ended(void *user) {
-    (void)user;
-    return cli_interrupted();
+    const view_args *args = user;
+    return args->unsaid || cli_interrupted();
 }
 
 static void say(void *user, noc_log_level level, const char *text) {
@@ -201,11 +202,11 @@ static void open_browser(const char *link) {
 }
 
 static void listening(void *user, const char *link) {
-    const view_args *args = user;
+    view_args *args = user;
     cli_progress_clear();
     printf("%s\n", link);
-    fflush(stdout);
-    if (args->open)
+    args->unsaid = !cli_flush(stdout); /* nobody could come */
+    if (args->open && !args->unsaid)
         open_browser(link);
 }
 
@@ -245,7 +246,7 @@ static int view(view_args *args, noc_log *log) {
     free((void *)source.given);
     if (status == NOC_ERR_UNSUPPORTED)
         cli_error("this build has no viewer: %s; build it with the Meson option -Dviewer=enabled", viewer_features());
-    return status ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+    return status || args->unsaid ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
 }
 
 static int run(void *arguments) {

@@ -34,6 +34,10 @@ static void test_nearest(void **state) {
     assert_string_equal(noc_text_nearest("cand", words, 3), "candidates");       /* only begun */
     assert_string_equal(noc_text_nearest("lists", words, 3), "list");
     assert_null(noc_text_nearest("window", words, 3));
+    char other[300] = { 0 }, longer[400] = { 0 };
+    memset(other, 'a', sizeof(other) - 1);
+    memset(longer, 'b', sizeof(longer) - 1);
+    assert_null(noc_text_nearest(other, (const char *[]){ longer }, 1)); /* as far apart as they are long */
 }
 
 static void test_what_people_write(void **state) {

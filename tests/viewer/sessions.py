@@ -335,6 +335,14 @@ def test_ports_and_addresses_that_cannot_be(p):
         assert got[0] == status and text in got[1] and len(got[1].splitlines()) <= 2, (arguments, got)
 
 
+def test_a_link_that_nobody_gets(p):
+    """It ends where the link cannot be written: nobody could come."""
+    for end in ">/dev/full", ">&-":
+        got = subprocess.run(["sh", "-c", 'exec "$0" view builtin:single --port 0 ' + end, os.environ["NOC_PROGRAM"]],
+                             stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        assert got.returncode == 1 and "standard output" in got.stderr, (end, got)
+
+
 def test_inputs_that_cannot_be(p):
     got = run("nowhere.gml", "--port", "0")
     assert got[0] == 1 and got[1].count("nowhere.gml") == 1, got
