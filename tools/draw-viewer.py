@@ -47,7 +47,7 @@ def pick(page, x, y):
     box = page.evaluate("(({ left, top, width, height }) => [left, top, width, height])"
                         "(document.querySelector('.pane').getBoundingClientRect())")
     page.click(box[0] + x * box[2], box[1] + y * box[3])
-    page.wait("document.querySelectorAll('table.rows tbody tr').length > 2", 60)
+    page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2", 60)
 
 
 def show(page, mode):

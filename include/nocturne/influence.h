@@ -191,12 +191,19 @@ typedef struct noc_influence_row {
     double distance;    /* m, from the region's centre to the emitter's */
 } noc_influence_row;
 
+/* What all emitters of one kind bring: that much is of windows. */
+typedef struct noc_influence_kind {
+    noc_estimate lux, share;
+    size_t emitters; /* of it, that were found to bring anything */
+} noc_influence_kind;
+
 /* All in all. */
 typedef struct noc_influence_sum {
     noc_estimate lux; /* of all lights and the sky */
     noc_estimate sky, sky_share;
-    noc_estimate rest, rest_share; /* of emitters beyond the rows that were asked for */
-    size_t emitters;               /* that were found to bring anything */
+    noc_influence_kind kinds[NOC_EMITTER_KIND_COUNT]; /* by noc_emitter_kind; they and the sky are all */
+    noc_estimate rest, rest_share;                    /* of emitters beyond the rows that were asked for */
+    size_t emitters;                                  /* that were found to bring anything */
     /* where params have an eye: mean luminance towards it of the light that the region reflects, cd/m2; else 0 */
     noc_estimate luminance;
     uint64_t samples, rays; /* points that were looked at, shadow rays that were traced */
@@ -254,10 +261,10 @@ NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows
 NOC_API noc_status noc_ranking_get_classes(noc_ranking *ranking, noc_influence_class *classes, size_t count,
                                            size_t *found);
 
-/* These rows, then the sky, the sum and what classes of surfaces get (if there are any: m2 of them and of all, too), as
- * CSV with a head of names: what nocturne influence --csv writes. Places are in the scene's CRS, local metres where it
- * has none; the report, which may be NULL, tells of lamps. free() it. NULL: no memory, or a pointer that should not be
- * NULL, which is reported. */
+/* These rows, then what the kinds of emitters bring, the sky, the sum and what classes of surfaces get (if there are
+ * any: m2 of them and of all, too), as CSV with a head of names: what nocturne influence --csv writes. Places are in
+ * the scene's CRS, local metres where it has none; the report, which may be NULL, tells of lamps. free() it. NULL: no
+ * memory, or a pointer that should not be NULL, which is reported. */
 NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
                                 size_t count, const noc_influence_sum *sum, const noc_influence_class *classes,
                                 size_t class_count);

@@ -85,6 +85,10 @@ char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const 
         csv_row(out, scene, report, &rows[i], i + 1);
     for (size_t i = 0; i < class_count; i++)
         area += classes[i].weight;
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
+        if (sum->kinds[k].emitters)
+            csv_rest(out, noc_emitter_kind_name((noc_emitter_kind)k), "kind", sum->kinds[k].lux, sum->kinds[k].share,
+                     NAN);
     csv_rest(out, "", "sky", sum->sky, sum->sky_share, NAN);
     csv_rest(out, "", "all", sum->lux, (noc_estimate){ 1, 0 }, area);
     for (size_t i = 0; i < class_count; i++)

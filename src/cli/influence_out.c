@@ -82,6 +82,30 @@ static void print_classes(const influence_job *job) {
     }
 }
 
+/* The sums by kind of light, the strongest first; their shares are 100 %. */
+static void print_kinds(const noc_influence_sum *s) {
+    static const char *const nouns[] = { [NOC_EMITTER_LAMP] = "lamp",
+                                         [NOC_EMITTER_WINDOW] = "window",
+                                         [NOC_EMITTER_VEHICLE] = "vehicle light",
+                                         [NOC_EMITTER_SURFACE] = "surface",
+                                         [NOC_EMITTER_OTHER] = "other light" };
+    bool done[NOC_EMITTER_KIND_COUNT] = { false };
+    char name[64];
+    printf("%10s%9s %7s %6s   %s\n", "lx", "", "share %", "", "by kind");
+    for (;;) {
+        int best = -1;
+        for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
+            if (!done[k] && s->kinds[k].emitters && (best < 0 || s->kinds[k].lux.value > s->kinds[best].lux.value))
+                best = k;
+        if (best < 0)
+            break;
+        done[best] = true;
+        print_rest(noc_text_many(name, s->kinds[best].emitters, nouns[best]), s->kinds[best].lux, s->kinds[best].share);
+    }
+    if (s->sky.value > 0)
+        print_rest("sky", s->sky, s->sky_share);
+}
+
 static noc_status print_table(influence_job *job) {
     const noc_influence_sum *s = &job->sum;
     const noc_region_info *r = &job->region_info;
@@ -98,6 +122,8 @@ static noc_status print_table(influence_job *job) {
         printf("%s cd/m2 ± %.2g towards the camera, without what shines itself\n", cli_number(a, s->luminance.value),
                s->luminance.error);
     print_classes(job);
+    if (s->lux.value > 0)
+        print_kinds(s);
     if (job->count)
         printf("%10s%9s %7s %6s   %-8s %8s %8s %6s  %s\n", "lx", "", "share %", "", "kind", "m away", "lm", "K",
                "name, street, file");
@@ -179,6 +205,19 @@ static void json_row(const influence_job *job, const noc_influence_row *row) {
     printf("}");
 }
 
+/* All of them, those that bring nothing, too; sky is beside them. */
+static void json_kinds(const noc_influence_sum *s) {
+    printf("],\n  \"kinds\": [");
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++) {
+        printf("%s    {\"kind\": \"%s\", ", k ? ",\n" : "\n", noc_emitter_kind_name((noc_emitter_kind)k));
+        json_estimate("lux", s->kinds[k].lux);
+        printf(", ");
+        json_estimate("share", s->kinds[k].share);
+        json_number("lights", (double)s->kinds[k].emitters);
+        printf("}");
+    }
+}
+
 static noc_status print_json(influence_job *job) {
     const noc_influence_sum *s = &job->sum;
     printf("{\"nocturne\": \"%s\", \"region\": ", noc_version());
@@ -210,6 +249,7 @@ static noc_status print_json(influence_job *job) {
         json_estimate("lux", job->classes[i].lux);
         printf("}");
     }
+    json_kinds(s);
     printf("],\n  \"rows\": [");
     for (size_t i = 0; i < job->count; i++) {
         fputs(i ? ",\n" : "\n", stdout);

@@ -94,12 +94,16 @@ static spread spread_of(const noc_ranking *r, uint32_t emitter) {
 }
 
 typedef struct totals {
-    spread all, sky, luminance;
+    spread all, sky, luminance, kinds[NOC_EMITTER_KIND_COUNT];
 } totals;
 
 static totals totals_of(const noc_ranking *r) {
-    totals t;
+    totals t = { 0 };
     for (int b = 0; b < RANKING_BATCHES; b++) {
+        const ranking_sums *s = &r->batch[b].sums;
+        for (size_t i = 0; i < s->cap; i++)
+            if (s->emitter[i] != NOC_NO_EMITTER)
+                t.kinds[r->emitters.all.data[s->emitter[i]].kind].part[b] += s->value[i] / samples_of(r);
         t.all.part[b] = r->batch[b].all / samples_of(r);
         t.sky.part[b] = r->batch[b].sky / samples_of(r);
         t.luminance.part[b] = r->batch[b].luminance / samples_of(r);
@@ -168,7 +172,7 @@ static order *order_emitters(const noc_ranking *r, size_t *found) {
     return o;
 }
 
-static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, size_t emitters,
+static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, const order *o, size_t emitters,
                      noc_influence_sum *sum) {
     *sum = (noc_influence_sum){ .lux = mean_of(&t->all),
                                 .sky = mean_of(&t->sky),
@@ -180,6 +184,10 @@ static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, 
                                 .samples = (uint64_t)samples_of(r) * RANKING_BATCHES,
                                 .seconds = r->seconds,
                                 .restarts = r->restarts };
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
+        sum->kinds[k] = (noc_influence_kind){ mean_of(&t->kinds[k]), ratio_of(&t->kinds[k], &t->all), 0 };
+    for (size_t i = 0; i < emitters; i++)
+        sum->kinds[r->emitters.all.data[o[i].emitter].kind].emitters++;
     for (int b = 0; b < RANKING_BATCHES; b++)
         sum->rays += r->batch[b].rays;
 }
@@ -248,10 +256,10 @@ noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count
             rest.part[b] -= s.part[b];
     }
     noc_scene_unlock_read(r->view->scene);
-    free(o);
     if (found)
         *found = count;
     if (sum)
-        fill_sum(r, &t, &rest, emitters, sum);
+        fill_sum(r, &t, &rest, o, emitters, sum);
+    free(o);
     return NOC_OK;
 }

@@ -51,6 +51,31 @@ static json_t *rows_of(const noc_influence_row *rows, size_t count, const noc_in
     return list;
 }
 
+/* What lamps bring together, what windows, ..., and the sky. */
+static json_t *kinds_of(const noc_influence_sum *sum) {
+    static const char *const names[] = {
+        [NOC_EMITTER_LAMP] = "lamp",       [NOC_EMITTER_WINDOW] = "window", [NOC_EMITTER_VEHICLE] = "car",
+        [NOC_EMITTER_SURFACE] = "surface", [NOC_EMITTER_OTHER] = "other",   [NOC_EMITTER_KIND_COUNT] = "sky"
+    };
+    json_t *list = json_array();
+    for (int k = 0; k <= NOC_EMITTER_KIND_COUNT; k++) {
+        noc_influence_kind one = { sum->sky, sum->sky_share, 0 };
+        if (k < NOC_EMITTER_KIND_COUNT)
+            one = sum->kinds[k];
+        if (!(one.lux.value > 0))
+            continue;
+        json_t *row = json_object();
+        json_object_set_new(row, "kind", json_string(names[k]));
+        json_object_set_new(row, "emitters", json_integer((json_int_t)one.emitters));
+        json_object_set_new(row, "share", ask_number(one.share.value));
+        json_object_set_new(row, "error", ask_number(one.share.error));
+        json_object_set_new(row, "lux", ask_number(one.lux.value));
+        json_object_set_new(row, "lux_error", ask_number(one.lux.error));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
 /* What a building's walls, roof, windows, ... get. */
 static json_t *classes_of(const noc_influence_class *classes, size_t count) {
     json_t *list = json_array();
@@ -113,6 +138,7 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_set_new(m, "luminance", ask_number(sum.luminance.value));
     json_object_set_new(m, "luminance_error", ask_number(sum.luminance.error));
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
+    json_object_set_new(m, "kinds", kinds_of(&sum));
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
     if (done >= 1)
         ask_keep(a, q->id, csv_of(a, ranking, about));

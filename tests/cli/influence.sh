@@ -16,8 +16,10 @@ ask() { run influence map.osm --map-surfaces -q --sky 0 "$@"; }
 ask --region "street:Well Lane" --csv well.csv
 grep -q 'node/12, mapped\|node/12, Well Lane, map.osm' out && grep -q '^street:Well Lane: around' out &&
     grep -Eq '^ +[0-9.]+ ±[0-9.]+ +[0-9]+  road$' out && tail -n 1 well.csv | grep -q '^,"road","class",' &&
-    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 6 ]
+    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 7 ]
 result $? "a street is lit by its lamps, the stronger one first"
+grep -Eq '^ +[0-9.]+ ±[0-9.]+ +100.00 ±0.00 +2 lamps$' out && grep -q '^,"lamp","kind",' well.csv
+result $? "and both are told as one kind"
 
 awk -F, 'NR > 1 && $1 != "" { share += $7; lux += $5 } /"all"/ { all = $5 }
     END { exit !(share > .999 && share < 1.001 && lux > .999 * all && lux < 1.001 * all) }' well.csv
@@ -35,6 +37,10 @@ assert rows[1]['tags'] == {'highway': 'street_lamp', 'lamp_type': 'led', 'note':
     'note' in rows[1]['tags'], rows[1]
 assert [c['class'] for c in j['classes']] == ['road'] and j['classes'][0]['area'] > 100, j
 assert abs(j['classes'][0]['lux'] - j['lux']) < 1e-6 * j['lux'] and j['classes'][0]['lux_error'] > 0, j
+kinds = {k['kind']: k for k in j['kinds']}
+assert list(kinds) == ['lamp', 'window', 'vehicle', 'surface', 'other'] and kinds['window']['lux'] == 0, kinds
+assert kinds['lamp']['lights'] == 2 and abs(kinds['lamp']['lux'] - j['lux']) < 1e-6 * j['lux'], kinds
+assert kinds['lamp']['lux_error'] > 0 and abs(kinds['lamp']['share'] - 1) < 1e-9, kinds
 assert abs(rows[0]['lumens'] - 9000) < 1 and j['lux'] > 0 and j['sky'] == 0
 PY
 result $? "JSON has names, streets, tags and errors"
@@ -43,9 +49,12 @@ ask --json --region "street:Well Lane" --threads 1 --time 0 && sed 's/"seconds".
     ask --json --region "street:Well Lane" --threads 3 --time 0 && sed 's/"seconds".*//' out | cmp -s - one
 result $? "any number of threads gives the same table"
 
-run influence builtin:city -q --region pixel:640,600 --top 3 && [ "$(grep -c ' ±.* ±' out)" = 5 ] &&
+run influence builtin:city -q --region pixel:640,600 --top 3 &&
+    [ "$(sed '1,/share .*m away/d' out | grep -c ' ±.* ±')" = 5 ] &&
+    awk '/by kind/ { on = 1; next } /m away/ { on = 0 } on { sub("±", " "); sum += $3 }
+        END { exit !(sum > 99.9 && sum < 100.1) }' out &&
     grep -q 'cd/m2 .* towards the camera' out && grep -Eq ' [0-9,]+ others$' out
-result $? "a pixel has three rows, the others, the sky, and its luminance"
+result $? "a pixel has three rows, the others, the sky, its luminance, and kinds that sum up"
 
 run build builtin:city -o city.noct -q && run influence city.noct -q --region "street:street 1" --top 2 &&
     [ "$(grep -c '  lamp ' out)" -ge 1 ]
@@ -84,7 +93,7 @@ cp map.osm kept.osm
 expect "an input is not overwritten" 1 'is an input too' influence map.osm --region point:0,0 --csv map.osm
 cmp -s map.osm kept.osm
 result $? "and stays as it is"
-ask --region "street:Well Lane" --csv - && head -n 1 out | grep -q '^rank,name,' && [ "$(wc -l <out)" = 6 ]
+ask --region "street:Well Lane" --csv - && head -n 1 out | grep -q '^rank,name,' && [ "$(wc -l <out)" = 7 ]
 result $? "--csv - writes CSV in place of the table"
 expect "one of two on standard output" 2 'exclude each other' influence map.osm --region point:0,0 --csv - --json
 expect "classes are those of objects" 2 'is for --region object' influence map.osm --region point:0,0 --class wall

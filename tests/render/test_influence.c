@@ -94,6 +94,57 @@ static void shares_are_those_of_brute_force(void **state) {
     }
 }
 
+/* The crowd has lights of several kinds: with those of one alone, a picture is as bright as that kind's sum says. */
+static void kinds_are_those_of_brute_force(void **state) {
+    (void)state;
+    enum { LIGHTS = 400 };
+    noc_scene *s = crowd(LIGHTS);
+    noc_view *view = own_view(s, 2, NULL);
+    noc_camera c = from_above();
+    noc_render_params p = measure(SIDE, SIDE, NOC_METHOD_REFERENCE);
+    bool sees[SIDE * SIDE];
+    noc_region *region = pixels(view, &c, false, sees);
+    answer a = ask(view, region, &p, 6000000);
+    double all = by_reference(s, view, &c, &p, sees, ALL_LIGHTS, 40), lux = 0, share = 0;
+    size_t emitters = 0;
+    int kinds = 0;
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++) {
+        const noc_influence_kind *sum = &a.sum.kinds[k];
+        noc_light_info l;
+        noc_emitter e;
+        float made[LIGHTS][3];
+        lux += sum->lux.value;
+        share += sum->share.value;
+        emitters += sum->emitters;
+        if (!sum->emitters) {
+            assert_true(sum->lux.value == 0 && sum->lux.error == 0);
+            continue;
+        }
+        for (int i = 0; i < LIGHTS; i++) {
+            assert_int_equal(noc_scene_get_light(s, (size_t)i, &l), NOC_OK);
+            memcpy(made[i], l.light.emission, sizeof(made[i]));
+            assert_int_equal(noc_scene_get_emitter(s, (size_t)i, &e), NOC_OK);
+            if ((int)e.kind != k)
+                assert_int_equal(noc_scene_set_emission(s, i, (float[3]){ 0 }), NOC_OK);
+        }
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        double truth = by_reference(s, view, &c, &p, sees, ALL_LIGHTS, 40);
+        for (int i = 0; i < LIGHTS; i++)
+            assert_int_equal(noc_scene_set_emission(s, i, made[i]), NOC_OK);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        assert_true(truth > 0.02 * all && truth < 0.98 * all);
+        assert_true(off(sum->lux, truth) < 4 && off(sum->share, truth / all) < 4);
+        assert_true(sum->lux.error > 0 && sum->lux.error < 0.01 * truth);
+        kinds++;
+    }
+    assert_true(kinds >= 2 && emitters == a.sum.emitters);
+    assert_true(fabs(lux + a.sum.sky.value - a.sum.lux.value) < 1e-9 * a.sum.lux.value);
+    assert_true(fabs(share + a.sum.sky_share.value - 1) < 1e-9);
+    noc_region_destroy(region);
+    close_view(view);
+    noc_scene_destroy(s);
+}
+
 /* ---- errors ---- */
 
 typedef struct coverage {
@@ -121,7 +172,7 @@ static void errors_cover(void **state) {
         noc_region *region = point ? region_of(&y, 1) : region_of(floor, 2);
         noc_render_params p = no_sky(99991);
         answer truth = ask(view, region, &p, 20000000);
-        coverage lux = { 0 }, share = { 0 };
+        coverage lux = { 0 }, share = { 0 }, kinds = { 0 };
         for (uint32_t seed = 1; seed <= 200; seed++) {
             p.seed = seed * 7919;
             answer a = ask(view, region, &p, 0);
@@ -131,11 +182,15 @@ static void errors_cover(void **state) {
                 if (row && row->share.error > 0)
                     cover(&share, row->share, truth.rows[i].share.value);
             }
+            const noc_influence_kind *flat = &a.sum.kinds[NOC_EMITTER_SURFACE];
+            cover(&kinds, flat->lux, truth.sum.kinds[NOC_EMITTER_SURFACE].lux.value);
+            cover(&kinds, flat->share, truth.sum.kinds[NOC_EMITTER_SURFACE].share.value);
         }
         double of_lux = (double)lux.inside / lux.of, of_shares = (double)share.inside / share.of;
-        print_message("# %s: %.1f %% of totals, %.1f %% of shares within 1.96 standard errors\n",
-                      point ? "point" : "floor", 100 * of_lux, 100 * of_shares);
-        assert_true(of_lux > 0.90 && of_lux < 0.99);
+        double of_kinds = (double)kinds.inside / kinds.of;
+        print_message("# %s: %.1f %% of totals, %.1f %% of shares, %.1f %% of a kind within 1.96 standard errors\n",
+                      point ? "point" : "floor", 100 * of_lux, 100 * of_shares, 100 * of_kinds);
+        assert_true(of_lux > 0.90 && of_lux < 0.99 && of_kinds > 0.90 && of_kinds < 0.99);
         assert_true(share.of >= 300 && of_shares > 0.91 && of_shares < 0.985);
         noc_region_destroy(region);
     }
@@ -397,6 +452,7 @@ int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(points_bring_their_closed_form),
                                         cmocka_unit_test(the_sky_and_luminance_are_those_of_a_picture),
                                         cmocka_unit_test(shares_are_those_of_brute_force),
+                                        cmocka_unit_test(kinds_are_those_of_brute_force),
                                         cmocka_unit_test(errors_cover),
                                         cmocka_unit_test(threads_change_nothing),
                                         cmocka_unit_test(edits_begin_anew_and_cancelling_keeps),

@@ -23,6 +23,13 @@ def test_who_lights_this(p):
     assert answer["lux"] > 0 and len(answer["place"]) == 3 and answer["class"], answer
     shares = [row["share"] for row in answer["rows"]]
     assert abs(sum(shares) - 1) < 0.02 and all(row["error"] >= 0 for row in answer["rows"]), sum(shares)
+    kinds = {one["kind"]: one for one in answer["kinds"]}
+    assert "lamp" in kinds and "sky" in kinds and all(one["lux_error"] >= 0 for one in kinds.values()), kinds
+    assert near([sum(one["lux"] for one in kinds.values()) / answer["lux"],
+                 sum(one["share"] for one in kinds.values())], [1, 1], 1e-6), kinds
+    assert sum(one["emitters"] for one in kinds.values()) == answer["emitters"], kinds
+    lamps = sum(row["share"] for row in answer["rows"] if row["kind"] == "lamp")
+    assert lamps <= kinds["lamp"]["share"] + 1e-9, (lamps, kinds)
     named = [row["share"] for row in answer["rows"] if row["light"] >= 0]
     assert named == sorted(named, reverse=True) and len(named) > 1
     lamp = ask(c, "lamp", id=2, light=answer["rows"][0]["light"])
@@ -41,10 +48,12 @@ def test_who_lights_this(p):
     name, text = file.body[:file.name_size].decode(), file.body[file.name_size:].decode()
     lines = text.splitlines()
     assert file.number == 9 and name == "lights.csv" and lines[0].startswith("rank,name,kind,of,lux,"), lines[0]
-    assert len(lines) == 1 + answer["emitters"] + 2, (len(lines), answer["emitters"])
+    sums = len(kinds) - 1 + 2
+    assert len(lines) == 1 + answer["emitters"] + sums, (len(lines), answer["emitters"])
+    assert all('"kind"' in line for line in lines[-sums:-2]), lines[-sums:]
     assert answer["emitters"] > len(named)
     assert '"sky"' in lines[-2] and '"all"' in lines[-1], lines[-2:]
-    listed = [line.split(",") for line in lines[1:-2]]
+    listed = [line.split(",") for line in lines[1:-sums]]
     assert abs(sum(float(row[6]) for row in listed) + float(lines[-2].split(",")[6]) - 1) < 0.001
     c.say("save", id=10, what="csv", of=12345)
     assert said(c, "note")["level"] == "error"

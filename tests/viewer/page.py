@@ -43,15 +43,19 @@ class Page(Opened):
     def test_picks(self):
         page = self.page
         page.click(320, 330)
-        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
         text = page.evaluate("document.querySelector('.answer').innerText")
         assert ' lx' in text and 'class' in text, text
-        page.press('table.rows tbody tr')
+        page.press('table.ranking tbody tr')
         assert page.evaluate('viewer.highlighted.length') >= 1
-        shares = page.evaluate('''[...document.querySelectorAll('table.rows tbody tr td:nth-child(3)')]
+        shares = page.evaluate('''[...document.querySelectorAll('table.ranking tbody tr td:nth-child(3)')]
             .map((cell) => parseFloat(cell.textContent))''')
         assert 0 < sum(shares) < 101, shares
-        page.evaluate("document.querySelector('table.rows tbody tr[tabindex]').focus()")
+        kinds = page.evaluate('''[...document.querySelectorAll('table.kinds tbody tr')].map((row) =>
+            [row.cells[0].textContent, parseFloat(row.cells[1].textContent)])''')
+        assert abs(sum(share for _, share in kinds) - 100) < 1, kinds
+        assert any('lamp' in name for name, _ in kinds) and kinds == sorted(kinds, key=lambda one: -one[1]), kinds
+        page.evaluate("document.querySelector('table.ranking tbody tr[tabindex]').focus()")
         page.key('Enter')  # the card of a light, and back
         page.wait("document.querySelector('.answer').innerText.includes('What it lights')")
         press_text(page, 'Back to the ranking')

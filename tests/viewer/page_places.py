@@ -26,7 +26,7 @@ class Places(Opened):
         page.key('t')
         press_text(page, 'Rectangle')
         page.drag(60, 250, 200, 370)
-        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
         assert page.evaluate(painted) > 100
         assert 'this rectangle of the picture' in page.evaluate("document.querySelector('.answer h3').textContent")
         page.key('m')
@@ -82,7 +82,7 @@ class Places(Opened):
         page.wait("document.querySelector('.found li')?.dataset.kind === 'street'")
         page.key('Enter')
         page.wait("document.querySelector('.answer h3')?.textContent === 'Who lights Ring East?'")
-        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
         page.key('b')
         press_text(page, 'Go there')
         page.wait('viewer.state.camera.eye[2] > 2')

@@ -2,6 +2,30 @@
 // asks about a region. The answer is a ranked table, and each of its rows shows its light.
 import { el, button, number, places } from './dom.js';
 
+const KINDS = {
+    lamp: ['lamp', 'lamps'],
+    window: ['window', 'windows'],
+    car: ['light of cars', 'lights of cars'],
+    surface: ['surface that shines', 'surfaces that shine'],
+    other: ['other light', 'other lights'],
+};
+
+// "4 windows".
+const kindWords = ({ kind, emitters }) =>
+    kind in KINDS ? `${emitters.toLocaleString('en')} ${KINDS[kind][emitters === 1 ? 0 : 1]}` : kind;
+
+// A table of a word and figures in each row.
+function figures(kind, caption, heads, rows) {
+    const cell = (text, i) => el('td', { class: i ? 'figure' : null, text });
+    return el(
+        'table',
+        { class: `rows ${kind}` },
+        el('caption', { class: 'hidden', text: caption }),
+        el('thead', {}, el('tr', {}, ...heads.map((text) => el('th', { scope: 'col', text })))),
+        el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map(cell)))),
+    );
+}
+
 export class Ask {
     #asked = 0; // the question that is shown
     #running = false;
@@ -218,7 +242,10 @@ export class Ask {
     #tell(what, answer) {
         const first = answer.rows?.[0];
         const most = first ? ` Most of it, ${number(100 * first.share)} %, by ${first.name || first.kind}.` : '';
-        const light = answer.lux !== undefined ? `${number(answer.lux)} lx.${most}` : 'Nothing is there: the sky.';
+        const kinds = (answer.kinds ?? []).map((one) => `${kindWords(one)} ${number(100 * one.share)} %`).join(', ');
+        const by = kinds && ` By kind: ${kinds}.`;
+        const light =
+            answer.lux !== undefined ? `${number(answer.lux)} lx.${by}${most}` : 'Nothing is there: the sky.';
         const lamp = `${answer.name || answer.kind}, ${number(answer.lumens)} lm.`;
         this.app.emit('said', what === 'lamp' ? lamp : `Who lights ${this.#what}? ${light}`);
     }
@@ -261,6 +288,7 @@ export class Ask {
                 ['luminance', this.#estimate(answer.luminance, answer.luminance_error, 'cd/m²')],
             ]),
             this.#classes(answer.classes ?? []),
+            this.#kinds(answer.kinds ?? []),
             lamp,
         ].filter((one) => one);
     }
@@ -268,30 +296,35 @@ export class Ask {
     // What a building's walls, roof and windows get; a street's road and pavements.
     #classes(classes) {
         if (classes.length < 2) return null;
-        const cell = (text) => el('td', { class: 'figure', text });
-        return el(
-            'table',
-            { class: 'rows surfaces' },
-            el('caption', { class: 'hidden', text: 'Illuminance of its surfaces' }),
-            el(
-                'thead',
-                {},
-                el('tr', {}, ...['surface', 'm²', 'lx', '±'].map((text) => el('th', { scope: 'col', text }))),
-            ),
-            el(
-                'tbody',
-                {},
-                ...classes.map((one) =>
-                    el(
-                        'tr',
-                        {},
-                        el('td', { text: one.class }),
-                        cell(number(one.area)),
-                        cell(one.lux === null ? '' : number(one.lux)),
-                        cell(one.lux_error > 0 ? number(one.lux_error, 2) : ''),
-                    ),
-                ),
-            ),
+        return figures(
+            'surfaces',
+            'Illuminance of its surfaces',
+            ['surface', 'm²', 'lx', '±'],
+            classes.map((one) => [
+                one.class,
+                number(one.area),
+                one.lux === null ? '' : number(one.lux),
+                one.lux_error > 0 ? number(one.lux_error, 2) : '',
+            ]),
+        );
+    }
+
+    // What all lamps bring together, all windows, ..., the strongest first.
+    #kinds(kinds) {
+        if (!kinds.length) return null;
+        return figures(
+            'kinds',
+            'Sums by kind of light',
+            ['by kind', 'share', '±', 'lx', '±'],
+            [...kinds]
+                .sort((a, b) => b.share - a.share)
+                .map((one) => [
+                    kindWords(one),
+                    `${number(100 * one.share)} %`,
+                    one.error > 0 ? number(100 * one.error, 2) : '',
+                    number(one.lux),
+                    one.lux_error > 0 ? number(one.lux_error, 2) : '',
+                ]),
         );
     }
 
@@ -373,7 +406,7 @@ export class Ask {
         const body = el('tbody', {}, ...rows.map((row, i) => this.#row(row, i, most)));
         const table = el(
             'table',
-            { class: 'rows' },
+            { class: 'rows ranking' },
             el('caption', { class: 'hidden', text: 'Lights by what they bring' }),
             el(
                 'thead',
