@@ -82,7 +82,7 @@ class Access(Opened):
         shut = "document.getElementById('%s').hidden"
         for _ in range(2):
             page.click(320, 330)
-            page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+            page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
             assert page.evaluate("document.activeElement.id") == 'stage'
             page.key('Escape')
             page.wait(shut % 'right')
@@ -118,7 +118,7 @@ class Access(Opened):
         page.evaluate("[...document.querySelectorAll('.panel button')].find((one) => one.textContent === 'Middle')"
                       ".focus()")
         page.key('Enter')
-        page.wait("document.querySelectorAll('table.rows tbody tr').length > 2")
+        page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
         assert page.evaluate("document.activeElement.className") == 'answer'
         for _ in range(2):  # to its first row or button, whatever pictures and answers come
             page.key('Tab')
