@@ -69,9 +69,10 @@ class Access(Opened):
         missing = sorted(set(range(wanted)) - reached)
         assert not missing, [page.evaluate(f"document.querySelector('[data-wanted=\"{i}\"]').outerHTML")[:100]
                              for i in missing[:4]]
-        for key in 'pb':
-            blur(page)
-            page.key(key)
+        blur(page)
+        page.key('Escape')
+        page.key('Escape')
+        page.wait("['left', 'right'].every((id) => document.getElementById(id).hidden)")
         roles = page.evaluate("""['said', 'toasts', 'loading'].map((id) => document.getElementById(id))
             .map((one) => one.getAttribute('aria-live') ?? one.getAttribute('role'))""")
         assert roles == ['polite', 'polite', 'status'], roles
