@@ -134,7 +134,7 @@ static size_t linear_ticks(double low, double high, double *ticks, size_t max) {
 static size_t log_ticks(double low, double high, double *ticks, size_t max) {
     static const double steps[] = { 1, 2, 5 };
     int first = (int)floor(log10(low)), last = (int)floor(log10(high) + 1e-9);
-    double decades = log10(high / low);
+    double decades = log10(high) - log10(low); /* their quotient need not be a number */
     size_t n = 0;
     bool fine = 3 * decades + 1 <= (double)max;
     int stride = fine ? 1 : (int)ceil((decades + 1) / (double)max);

@@ -203,11 +203,13 @@ static void label_cell(const field *f, canvas *to, int left, const box *cell, bo
     nearest(f, cell, at);
     for (size_t k = 0; k < l->bar.line_count && *count < MOST; k++) {
         char text[32];
+        if (at[k][0] < 0)
+            continue;
         noc_snprintf(text, sizeof(text), "%.6g", l->lines[k]);
         int w = text_width(text, l->scale) + 2 * l->scale, h = (TEXT_HEIGHT + 2) * l->scale;
         box b = { at[k][0] - w / 2, at[k][1] - h / 2, w, h };
         bool inside = b.x >= 0 && b.y >= 0 && b.x + w <= f->width && b.y + h <= f->height;
-        if (at[k][0] < 0 || !inside || touches(&b, taken, *count))
+        if (!inside || touches(&b, taken, *count))
             continue;
         taken[(*count)++] = b;
         const uint8_t *on = colormap_at(l->bar.map, colorbar_position(&l->bar, l->lines[k]));

@@ -131,6 +131,12 @@ static void parts(void **state) {
     assert_true(bar.logarithmic && bar.low == 1 && bar.high == 300 && bar.tick_count >= 3 && !bar.isoline_count);
     for (int i = 0; i < bar.tick_count; i++)
         assert_true(bar.ticks[i] >= 1 && bar.ticks[i] <= 300 && (!i || bar.ticks[i] > bar.ticks[i - 1]));
+    const noc_channel_params widest = { 5e-324, 1.7e308, .scale = NOC_BAR_LOG };
+    assert_int_equal(noc_channel_bar(c, &widest, &bar, NULL), NOC_OK);
+    assert_true(bar.tick_count >= 3);
+    for (int i = 1; i < bar.tick_count; i++)
+        assert_true(bar.ticks[i] > bar.ticks[i - 1]);
+    assert_int_equal(noc_channel_bar(c, NULL, &bar, NULL), NOC_OK);
     for (int i = 0; i < W; i += 7) {
         uint8_t rgb[3];
         noc_bar_colour(log(c->value[i] / bar.low) / log(bar.high / bar.low), rgb);
