@@ -309,6 +309,8 @@ json_t *look_idle(const look *l, bool has_map) {
             json_object_set_new(idle, o->name, json_string(why));
     }
     if (l->show)
+        json_object_set_new(idle, "smooth", json_string("numbers in colours are not smoothed"));
+    if (l->show)
         json_object_set_new(idle, "exposure", json_string("numbers in colours have no exposure and no tone map"));
     for (const char *const *name = of_bars; *name && !look_has_bar(l); name++)
         json_object_set_new(idle, *name, json_string("what is shown has no colour bar"));

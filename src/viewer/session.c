@@ -11,16 +11,20 @@ double session_now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static void tell_loading(session *s, const char *what, double done) {
+    json_t *m = wire_begin("loading");
+    json_object_set_new(m, "what", wire_text(what));
+    json_object_set_new(m, "done", json_real(done));
+    outbox_text(s->box, OUTBOX_LOADING, 0, wire_end(m));
+}
+
 /* Until the scene is there. false: it will not be. */
 static bool wait_for_world(session *s) {
     unsigned wakes = 0;
     char what[128];
     double done;
     while (!inbox_ended(&s->in) && world_loading(s->setup->world, what, sizeof(what), &done)) {
-        json_t *m = wire_begin("loading");
-        json_object_set_new(m, "what", wire_text(what));
-        json_object_set_new(m, "done", json_real(done));
-        outbox_text(s->box, OUTBOX_LOADING, 0, wire_end(m));
+        tell_loading(s, what, done);
         wakes = inbox_wait(&s->in, wakes, 0.25);
     }
     return !inbox_ended(&s->in) && !world_failed(s->setup->world);
@@ -41,6 +45,7 @@ static void do_all(session *s) {
 static void serve(session *s) {
     look first = look_default(s->setup->source);
     unsigned wakes = 0;
+    tell_loading(s, "looking for the first view", 0);
     if (panes_init(&s->panes, s->setup->world, s->box, s->setup->log, &first) ||
         mover_init(&s->mover, s->setup->world, s->setup->source, 16.0 / 9)) {
         session_note(s, "error", "there is no memory for a view");

@@ -33,7 +33,14 @@ void session_tell_state(session *s) {
     outbox_text(s->box, OUTBOX_STATE, 0, wire_end(state_of(s, wire_begin("state"))));
 }
 
-/* Cameras that it can go to by name: the recipe's, then those that are found in the scene. */
+static bool in_recipe(const noc_recipe_info *recipe, const char *name) {
+    for (size_t i = 0; i < recipe->camera_count; i++)
+        if (!strcmp(recipe->cameras[i].name, name))
+            return true;
+    return false;
+}
+
+/* Cameras that it can go to by name: the recipe's, then those of other names that are found in the scene. */
 static json_t *cameras(const session *s) {
     static const char *const found[] = { "own", "street", "aerial", "overview" };
     const noc_recipe_info *recipe = noc_recipe_get_info(s->setup->source->recipe);
@@ -41,7 +48,8 @@ static json_t *cameras(const session *s) {
     for (size_t i = 0; i < recipe->camera_count; i++)
         json_array_append_new(list, wire_text(recipe->cameras[i].name));
     for (size_t i = 0; i < sizeof(found) / sizeof(*found); i++)
-        json_array_append_new(list, json_string(found[i]));
+        if (!in_recipe(recipe, found[i]))
+            json_array_append_new(list, json_string(found[i]));
     return list;
 }
 

@@ -20,13 +20,14 @@ out_view session_view(const session *s, int which) {
 }
 
 /* false: there is no memory to send it. */
-static bool send_file(session *s, uint32_t id, const char *name, const void *data, size_t size) {
+static bool send_file(session *s, uint32_t id, const char *name, uint64_t frames, const void *data, size_t size) {
     size_t length = strlen(name);
     unsigned char *message = malloc(OUTBOX_ROOM + WIRE_HEAD + length + size), *at = message;
     if (!message)
         return false;
     at += OUTBOX_ROOM;
-    wire_write_head(&(wire_head){ .kind = WIRE_IS_FILE, .number = id, .name_size = (uint32_t)length }, at);
+    wire_head head = { .kind = WIRE_IS_FILE, .number = id, .frames = (uint32_t)frames, .name_size = (uint32_t)length };
+    wire_write_head(&head, at);
     memcpy(at + WIRE_HEAD, name, length);
     memcpy(at + WIRE_HEAD + length, data, size);
     outbox_binary(s->box, id, message, WIRE_HEAD + length + size);
@@ -46,7 +47,7 @@ static bool save_picture(session *s, uint32_t id, int which, bool exr, char *why
     if (!out_picture(&view, of, exr, &data, &bytes, why, size))
         return false;
     snprintf(why, size, "there is no memory to send the picture");
-    bool sent = send_file(s, id, exr ? "night.exr" : "night.png", data, bytes);
+    bool sent = send_file(s, id, exr ? "night.exr" : "night.png", view.frames, data, bytes);
     free(data);
     return sent;
 }
@@ -66,7 +67,7 @@ static bool save_recipe(session *s, const wire_message *m, char *why, size_t siz
     if (!text)
         return false;
     snprintf(why, size, "there is no memory to send the recipe");
-    bool sent = send_file(s, m->save.id, "view.yaml", text, strlen(text));
+    bool sent = send_file(s, m->save.id, "view.yaml", 0, text, strlen(text));
     free(text);
     return sent;
 }
@@ -74,7 +75,7 @@ static bool save_recipe(session *s, const wire_message *m, char *why, size_t siz
 static bool save_table(session *s, const wire_message *m, char *why, size_t size) {
     char *csv = s->asker ? asker_csv(s->asker, m->save.of) : NULL;
     snprintf(why, size, "that question has no table, or it is long ago");
-    bool sent = csv && send_file(s, m->save.id, "lights.csv", csv, strlen(csv));
+    bool sent = csv && send_file(s, m->save.id, "lights.csv", 0, csv, strlen(csv));
     free(csv);
     return sent;
 }

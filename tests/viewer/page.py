@@ -216,6 +216,25 @@ class Page(Opened):
         buttons = page.evaluate("[...document.querySelectorAll('.which button')].map((one) => one.textContent)")
         assert captions == ['A', 'B'] and buttons == ['A', 'B', 'all'], (captions, buttons)
         page.evaluate('viewer.edit(0)')
+        page.evaluate("viewer.set('smooth', 'off', 0); viewer.set('smooth', 'on', 1)")
+        page.wait("viewer.state.panes[0].values.smooth === 'false'")
+        page.evaluate("(viewer.marks = new Set(), viewer.on('shown', () => viewer.marks.add("
+                      "document.querySelector('#status .smoothed').textContent)), 0)")
+        x, y = page.middle('.divider')
+        page.drag(x - 60, y + 60, x - 30, y + 60)  # the picture
+        page.wait("viewer.marks.has('B smoothed, for display')")
+        assert page.evaluate("[...viewer.marks].every((text) => text === '' || text.startsWith('B '))")
+        page.evaluate("viewer.set('smooth', 'on', 0)")
+
+    def test_says_what_it_waits_for(self):
+        page = opened(self.machine, self.served.link)
+        page.call('Page.addScriptToEvaluateOnNewDocument', source='''document.addEventListener('DOMContentLoaded', () =>
+            new MutationObserver(([{ target }]) => (globalThis.waited ??= []).push(target.textContent))
+                .observe(document.getElementById('loading'), { childList: true }))''')
+        page.call('Page.reload')
+        page.wait("globalThis.waited?.includes('Drawing the first picture')", 60)
+        page.wait("document.querySelector('.picture').dataset.n && document.getElementById('loading').hidden", 60)
+        page.close()
 
     def test_holds(self):
         """What is held of A stays while lamps change, under any shape of the window, until the camera moves."""
@@ -319,6 +338,9 @@ class Page(Opened):
         for what, begins in (('png', b'\x89PNG'), ('exr', b'\x76\x2f\x31\x01'), ('recipe', b'')):
             page.evaluate(f"viewer.save('{what}', {{ pane: 0 }})")
             name, data = page.downloaded()
+            said = 'the mean of' if what != 'recipe' else 'saved.'
+            page.wait(f"document.querySelector('#toasts').lastChild?.textContent.includes('{name} saved')")
+            assert said in page.evaluate("document.querySelector('#toasts').lastChild.textContent")
             assert data.startswith(begins) and len(data) > 50, (name, data[:20])
             if what == 'recipe':
                 assert b'nocturne: 1' in data, data[:200]

@@ -391,12 +391,24 @@ def test_an_interruption_while_it_loads(p):
     assert ended == 130, (ended, text)
 
 
+def test_views_are_told_once(p):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "city.yaml")
+        open(path, "w").write("nocturne: 1\ninputs: [builtin:single]\n"
+                              "cameras: { street: { view: street }, a: { view: own } }\n")
+        q = Program(path)
+        c = enter(q, 64, 36)
+        assert c.welcome["cameras"] == ["street", "a", "own", "aerial", "overview"], c.welcome["cameras"]
+        c.close()
+        q.end()
+
+
 def file_of(c, what, **values):
     c.say("save", id=77, what=what, **values)
     message = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2 or
                          isinstance(m, dict) and m["t"] == "note" and m["level"] == "error")
     assert isinstance(message, Picture), message
-    assert message.number == 77
+    assert message.number == 77 and (message.frames > 0) == (what in ("png", "exr")), message.frames
     return message.body[:message.name_size].decode(), message.body[message.name_size:]
 
 

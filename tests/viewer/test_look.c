@@ -181,11 +181,13 @@ static void idle_options_say_why(void **state) {
     assert_non_null(strstr(text_of(idle, "environment-lux"), "no map"));
     assert_null(json_object_get(idle, "draws") && json_object_get(idle, "list") ? idle : NULL);
     assert_null(json_object_get(idle, "tonemap"));
+    assert_null(json_object_get(idle, "smooth"));
     json_decref(idle);
     set(&l, "show", "depth");
     idle = look_idle(&l, true);
     assert_non_null(json_object_get(idle, "tonemap"));
     assert_non_null(json_object_get(idle, "exposure"));
+    assert_non_null(strstr(text_of(idle, "smooth"), "not smoothed"));
     assert_null(json_object_get(idle, "environment-lux"));
     json_decref(idle);
 }

@@ -69,11 +69,17 @@ export class Out {
         }
     }
 
-    #download({ name, body }) {
+    #download({ name, body, frames }) {
         const url = URL.createObjectURL(new Blob([body]));
         const anchor = el('a', { href: url, download: name.replaceAll(/[/\\]/g, '_') || 'nocturne' });
         anchor.click();
         setTimeout(() => URL.revokeObjectURL(url), 10000);
-        this.app.emit('note', 'info', `${anchor.download} saved.`);
+        this.app.emit('note', 'info', `${anchor.download} saved${frames ? this.#mean(frames) : '.'}`);
+    }
+
+    #mean(frames) {
+        const last = Number(this.app.values().frames) || Infinity;
+        const more = frames < last ? ' Saved later it has more of them, and less noise.' : '';
+        return `: the mean of ${frames} ${frames === 1 ? 'frame' : 'frames'}.${more}`;
     }
 }

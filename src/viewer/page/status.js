@@ -7,7 +7,7 @@ const SHOWN = { error: 12000, warning: 8000, info: 4000 };
 export class Status {
     #times = [];
     #latencies = [];
-    #picture = null;
+    #smoothed = []; // of each pane: is its newest picture?
 
     constructor(root, loading, toasts, app) {
         this.app = app;
@@ -21,18 +21,20 @@ export class Status {
             ['error', 'relative standard error of its mean'],
             ['rays', 'rays a second'],
             ['latency', 'from the hand to the picture, median'],
+            ['aim', 'the dot in the middle of the picture is where these keys ask and go'],
             ['smoothed', 'this picture went through a filter for the eye; its numbers are no figures'],
         ]) {
             this.parts[name] = el('span', { class: name, title });
             root.append(this.parts[name]);
         }
+        this.parts.aim.textContent = 'the dot: Enter asks who lights it, G goes there';
         app.on('shown', (picture) => this.#shown(picture));
         app.on('note', (level, text) => this.note(level, text));
         app.connection.on('t:note', ({ level, text }) => this.note(level, text));
         app.connection.on('t:loading', (message) => this.#load(message));
         app.connection.on('open', () => this.#wait('Connected', 0));
         app.connection.on('closed', (seconds) => this.#closed(seconds));
-        app.on('welcome', () => (this.loading.hidden = true));
+        app.on('welcome', () => this.#wait('Drawing the first picture', 0));
         setInterval(() => this.#tick(), 500);
         this.#wait('Connecting', 0);
     }
@@ -69,19 +71,29 @@ export class Status {
 
     #shown(picture) {
         const now = performance.now();
-        this.#picture = picture;
+        this.loading.hidden = true;
         if (picture.pane === 0) this.#times.push(now);
         if (this.app.latency !== null) {
             this.#latencies.push(this.app.latency);
             this.app.latency = null;
             if (this.#latencies.length > 60) this.#latencies.shift();
         }
-        const { size, frames, error, smoothed } = this.parts;
+        const { size, frames, error } = this.parts;
         size.textContent = `${picture.width} × ${picture.height}`;
         frames.textContent = `${number(picture.frames, 6)} ${picture.frames === 1 ? 'frame' : 'frames'}`;
         error.textContent = Number.isFinite(picture.error) ? `error ${number(100 * picture.error, 2)} %` : '';
-        smoothed.textContent = picture.smoothed ? 'smoothed, for display' : '';
+        this.#mark(picture);
         this.#tick();
+    }
+
+    // Which of the pictures went through the filter, by name where not all did.
+    #mark(picture) {
+        const panes = this.app.state?.panes ?? [];
+        this.#smoothed[picture.pane] = picture.smoothed;
+        this.#smoothed.length = Math.min(this.#smoothed.length, Math.max(panes.length, 1));
+        const some = panes.filter((_, i) => this.#smoothed[i]).map(({ caption }) => caption);
+        const names = some.length < panes.length ? `${some.join(', ')} ` : '';
+        this.parts.smoothed.textContent = some.length ? `${names}smoothed, for display` : '';
     }
 
     #tick() {
