@@ -203,6 +203,8 @@ class Access(Opened):
             phone.touch('touchMove', [(x, 250)])
         phone.touch('touchEnd', [])
         phone.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {before["target"]}[i])) > 0.3')
+        phone.wait("document.querySelector('.map-body').textContent.includes('two zoom')")
+        assert 'wheel' not in phone.evaluate("document.querySelector('.map-body').textContent")
         phone.press('#tabs button')
         phone.wait("!document.getElementById('left').hidden")
         box = phone.evaluate("['clientWidth', 'clientHeight'].map((side) => document.getElementById('stage')[side])")

@@ -212,6 +212,35 @@ class Places(Opened):
         assert not page.errors, page.errors
         page.close()
 
+    def test_wide_photograph(self):
+        """One that is wider than the picture's room fits in, and pairs can be set at its sides."""
+        page = opened(self.machine, self.served.link, width=1000, height=500)
+        page.key('o')
+        page.wait("document.getElementById('photo-file')?.checkVisibility()")
+        page.evaluate('''(async () => {
+            const canvas = new OffscreenCanvas(800, 200);
+            canvas.getContext('2d').fillRect(0, 0, 800, 200);
+            const files = new DataTransfer();
+            files.items.add(new File([await canvas.convertToBlob()], 'wide.png', { type: 'image/png' }));
+            const box = document.getElementById('photo-file');
+            box.files = files.files;
+            box.dispatchEvent(new Event('change'));
+        })()''')
+        shape = "(({ width, height }) => width / height)(document.querySelector('.picture'))"
+        page.wait(f'Math.abs({shape} - 4) < 0.1')
+        press_text(page, 'Set pairs')
+        page.click(*on_stage(page, (0.01, 0.5)))
+        page.wait("document.querySelector('#right').innerText.includes('same point')")
+        press_text(page, 'Take away')
+        page.wait(f'{shape} < 3')
+        assert not page.errors, page.errors
+        page.close()
+
+    def test_ids_break_behind_signs(self):
+        parts = self.page.evaluate("import('./dom.js').then(({ breaks }) => breaks('DEBY_LOD2_4959457-a')"
+                                   ".map((one) => one.tagName ?? one))")
+        assert parts == ['DEBY_', 'WBR', 'LOD2_', 'WBR', '4959457-', 'WBR', 'a'], parts
+
 
 if __name__ == '__main__':
     run(Places)

@@ -1,6 +1,18 @@
 // ask.js: who lights this? A click in the picture asks about a place; a rectangle, a polygon of the map or a building
 // asks about a region. The answer is a ranked table, and each of its rows shows its light.
-import { el, button, number, places } from './dom.js';
+import { el, button, breaks, click, number, places } from './dom.js';
+
+// Lines that are seen on bright and on dark pictures.
+function rimmed(context, colour) {
+    for (const [width, style] of [
+        [5, 'rgb(0 0 0 / 75%)'],
+        [2, colour],
+    ]) {
+        context.lineWidth = width;
+        context.strokeStyle = style;
+        context.stroke();
+    }
+}
 
 const KINDS = {
     lamp: ['lamp', 'lamps'],
@@ -72,7 +84,7 @@ export class Ask {
         this.out = el(
             'div',
             { class: 'answer', tabindex: -1, role: 'region', 'aria-label': 'Answer' },
-            el('p', { class: 'quiet', text: 'Click a place in the picture, or choose a region.' }),
+            el('p', { class: 'quiet', text: `${click()} a place in the picture, or choose a region.` }),
         );
         drawers.add('Lights', 'right', el('div', { class: 'body' }, tools, this.out), 'T');
         panes.marks.push((context, pane) => this.#mark(context, pane));
@@ -179,7 +191,7 @@ export class Ask {
         this.#outline(null);
         this.#forget();
         this.out.replaceChildren(
-            el('p', { class: 'quiet', text: 'Click a place in the picture, or choose a region.' }),
+            el('p', { class: 'quiet', text: `${click()} a place in the picture, or choose a region.` }),
         );
         this.map.redraw();
         this.panes.draw();
@@ -214,14 +226,9 @@ export class Ask {
             return;
         }
         this.#answer = answer;
-        if (what === 'pixel') {
-            this.building.disabled = !answer.object && !answer.street;
-            this.building.textContent = answer.street
-                ? `Whole ${answer.street}`
-                : answer.object
-                  ? `Whole ${this.#kind(answer)}`
-                  : 'Whole object';
-        }
+        const { street, object } = what === 'lamp' ? {} : answer;
+        this.building.disabled = !street && !object;
+        this.building.textContent = `Whole ${street ?? (object ? this.#kind(answer) : 'object')}`;
         if (answer.outline && this.#region && !this.#region.outline) {
             this.#region.outline = answer.outline;
             this.map.region ??= answer.outline.map((place) => place.slice(0, 2));
@@ -254,7 +261,7 @@ export class Ask {
         const list = el('dl', { class: 'facts' });
         for (const [name, value] of pairs)
             if (value !== undefined && value !== null && value !== '')
-                list.append(el('dt', { text: name }), el('dd', { text: value }));
+                list.append(el('dt', { text: name }), el('dd', {}, ...breaks(value)));
         return list;
     }
 
@@ -435,7 +442,7 @@ export class Ask {
             el(
                 'td',
                 {},
-                el('span', { text: named ? row.name : `${row.kind} ${one ? row.light : ''}` }),
+                el('span', {}, ...breaks(named ? row.name : `${row.kind} ${one ? row.light : ''}`)),
                 ' ',
                 el('span', { class: 'quiet', text: named && one ? row.kind : '' }),
                 bar,
@@ -533,10 +540,9 @@ export class Ask {
         for (const row of this.app.highlighted) {
             const at = this.panes.where(pane, row.place);
             if (!at) continue;
-            context.strokeStyle = '#7dffb0';
             context.beginPath();
             context.arc(at[0], at[1], 10, 0, 7);
-            context.stroke();
+            rimmed(context, '#7dffb0');
             if (!place) continue;
             context.globalAlpha = 0.6;
             context.setLineDash([4, 4]);
@@ -548,7 +554,6 @@ export class Ask {
             context.globalAlpha = 1;
         }
         if (!place) return;
-        context.strokeStyle = '#ffd84d';
         context.beginPath();
         for (const [x, y] of [
             [1, 0],
@@ -559,6 +564,6 @@ export class Ask {
             context.moveTo(place[0] + 3 * x, place[1] + 3 * y);
             context.lineTo(place[0] + 10 * x, place[1] + 10 * y);
         }
-        context.stroke();
+        rimmed(context, '#ffd84d');
     }
 }

@@ -115,6 +115,16 @@ export function number(value, figures = 3) {
     return value.toLocaleString('en', { minimumFractionDigits: 0, maximumFractionDigits: Math.min(decimals, 10) });
 }
 
+// A name or id, which breaks behind its signs rather than in the middle of a number.
+export function breaks(text) {
+    const parts = String(text).split(/(?<=[_\-.:/])/);
+    return parts.flatMap((part, i) => (i ? [el('wbr'), part] : [part]));
+}
+
+// Who has no mouse taps.
+export const byTouch = () => window.matchMedia('(hover: none)').matches;
+export const click = () => (byTouch() ? 'Tap' : 'Click');
+
 // 1234567 as "1.23 M".
 export function short(value) {
     if (!Number.isFinite(value)) return '–';

@@ -1,6 +1,6 @@
 // map.js: the map beside the picture: lights, cars, tracks, the camera with what it sees; pan and zoom; a click goes
 // there; rectangles and polygons are drawn here. Metres of the scene, north (y) is up.
-import { el, button, clamp, number } from './dom.js';
+import { el, button, byTouch, clamp, number } from './dom.js';
 import { drawMap, readMap, scaleOf } from './map-draw.js';
 
 const AGAIN = 1000; // ms between two looks at cars that move
@@ -114,13 +114,18 @@ export class CityMap {
     }
 
     #say() {
-        const words = {
-            rect: 'Drag a rectangle on the map.',
-            polygon: 'Click the corners; Enter or a double click ends. Escape: no polygon.',
-        };
-        this.hint.textContent =
-            words[this.drawing?.kind] ??
-            'A click goes there, a click on a light asks about it. Drag moves the map, the wheel zooms.';
+        const words = byTouch()
+            ? {
+                  rect: 'Draw a rectangle on the map with a finger.',
+                  polygon: 'Tap the corners; a double tap ends.',
+                  none: 'A tap goes there, a tap on a light asks about it. A finger moves the map, two zoom.',
+              }
+            : {
+                  rect: 'Drag a rectangle on the map.',
+                  polygon: 'Click the corners; Enter or a double click ends. Escape: no polygon.',
+                  none: 'A click goes there, a click on a light asks about it. Drag moves the map, the wheel zooms.',
+              };
+        this.hint.textContent = words[this.drawing?.kind ?? 'none'];
     }
 
     // Another city is seen as a whole first; of the same one the map stays as it was.

@@ -17,6 +17,7 @@ export class Panes {
         this.split = 0.5; // of the divider
         this.share = 1; // of the window's resolution
         this.held = null; // { values, camera, frozen }: A beside a divider keeps the scene's settings that it had
+        this.aspect = 0; // that pictures have at least; 0: that of their pane
         app.on('picture', (picture) => this.#take(picture));
         app.on('state', (state) => this.#arrange(state));
         app.on('stats', () => this.#captions());
@@ -35,7 +36,7 @@ export class Panes {
             Math.sqrt(MOST_PIXELS / (box.width * box.height * all || 1)),
         );
         const side = (length) => clamp(Math.round(length * ratio * this.share), 16, 4096);
-        return { width: side(box.width), height: side(box.height) };
+        return { width: side(box.width), height: side(Math.min(box.height, box.width / (this.aspect || 1e-9))) };
     }
 
     // Where a point of the window lies: { pane, x, y }, 0 to 1 in its picture; null beside it.

@@ -1,6 +1,6 @@
 // photo.js: a photograph over the picture. It never leaves the browser: the program is told of clicked places alone,
 // and finds the camera that it was taken with.
-import { el, button, clamp, number } from './dom.js';
+import { el, button, clamp, click, number } from './dom.js';
 
 const LEAST = 4; // pairs
 
@@ -69,14 +69,22 @@ export class Photo {
             return;
         }
         this.#pairs = [];
+        this.#frame();
         this.#told();
         this.panes.draw();
+    }
+
+    // Where the photograph is wider than its pane the picture becomes as wide, so that all of it is seen.
+    #frame() {
+        this.panes.aspect = this.#bitmap ? this.#bitmap.width / this.#bitmap.height : 0;
+        this.app.emit('size');
     }
 
     #remove() {
         this.#bitmap?.close();
         this.#bitmap = null;
         this.file.value = '';
+        this.#frame();
         this.#pair(false);
         this.#pairs = [];
         this.#told();
@@ -120,7 +128,7 @@ export class Photo {
             const id = this.app.ask('pixel', hit, (answer) => {
                 if (answer.refused || (answer.done < 1 && !answer.place)) return;
                 if (answer.done < 1) this.app.cancel(id); // who lights it is not asked
-                if (!answer.place) this.says.textContent = 'Nothing is there: click a surface.';
+                if (!answer.place) this.says.textContent = `Nothing is there: ${click().toLowerCase()} a surface.`;
                 else this.#pairs.push({ photo, place: answer.place });
                 this.#told(!answer.place);
                 this.panes.draw();
@@ -151,9 +159,9 @@ export class Photo {
             this.says.textContent = !some
                 ? ''
                 : this.#open
-                  ? 'Now click the same point in the picture.'
+                  ? `Now ${click().toLowerCase()} the same point in the picture.`
                   : this.#pairing
-                    ? `Click a point in the photograph (${this.#pairs.length} of at least ${LEAST} pairs).`
+                    ? `${click()} a point in the photograph (${this.#pairs.length} of at least ${LEAST} pairs).`
                     : '';
         }
         this.list.replaceChildren(
