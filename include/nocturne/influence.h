@@ -152,6 +152,9 @@ typedef struct noc_region_info {
     bool point;       /* it is a single point */
 } noc_region_info;
 NOC_API void noc_region_get_info(const noc_region *region, noc_region_info *info);
+/* Corners of a convex outline as it is seen from above, counter-clockwise, at its lowest height; local metres. The
+ * region's outermost places in `most` directions: as many corners at most. Their count. */
+NOC_API size_t noc_region_outline(const noc_region *region, double (*corners)[3], size_t most);
 
 /* What the text of a region is read with. */
 typedef struct noc_region_params {

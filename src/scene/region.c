@@ -69,6 +69,39 @@ void noc_region_get_info(const noc_region *r, noc_region_info *info) {
         info->centre[k] /= info->weight;
 }
 
+static void corner_of(const noc_patch *p, int corner, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = p->p[k] + (corner == 1 ? (double)p->u[k] : corner == 2 ? (double)p->v[k] : 0);
+}
+
+size_t noc_region_outline(const noc_region *r, double (*corners)[3], size_t most) {
+    size_t count = 0;
+    double low = INFINITY, at[3];
+    if (!r || !corners)
+        return 0;
+    for (size_t i = 0; i < most; i++) {
+        double turn = 0.01 + 2 * M_PI * (double)i / (double)most, best = -INFINITY, out[3] = { 0 };
+        double x = cos(turn), y = sin(turn);
+        for (size_t k = 0; k < 3 * r->patches.len; k++) {
+            corner_of(&r->patches.data[k / 3], (int)(k % 3), at);
+            double far = at[0] * x + at[1] * y;
+            low = fmin(low, at[2]);
+            if (far > best) {
+                best = far;
+                memcpy(out, at, sizeof(out));
+            }
+        }
+        const double *last = count ? corners[count - 1] : NULL;
+        if (best > -INFINITY && !(last && last[0] == out[0] && last[1] == out[1]))
+            memcpy(corners[count++], out, sizeof(out));
+    }
+    if (count > 1 && corners[0][0] == corners[count - 1][0] && corners[0][1] == corners[count - 1][1])
+        count--;
+    for (size_t i = 0; i < count; i++)
+        corners[i][2] = low;
+    return count;
+}
+
 /* How wide a pixel is where its ray meets a surface, along it. */
 static double pixel_width(const noc_ray *ray, const noc_ray *next, const noc_hit *hit) {
     double apart = 0, toward = 0, d2 = 0;

@@ -115,10 +115,11 @@ static void *run(void *user) {
     return NULL;
 }
 
-asker *asker_create(viewer_world *world, outbox *box, inbox *in) {
+asker *asker_create(const viewer_source *source, viewer_world *world, outbox *box, inbox *in) {
     asker *a = calloc(1, sizeof(*a));
     if (!a)
         return NULL;
+    a->source = source;
     a->world = world;
     a->box = box;
     a->in = in;

@@ -19,7 +19,7 @@ typedef struct ask_view {
 } ask_view;
 
 /* NULL: no memory, or no thread. */
-asker *asker_create(viewer_world *world, outbox *box, inbox *in);
+asker *asker_create(const viewer_source *source, viewer_world *world, outbox *box, inbox *in);
 void asker_destroy(asker *a); /* ends it and waits; NULL is allowed */
 /* Takes a question; the oldest that waits is refused where there are too many. */
 void asker_ask(asker *a, const wire_ask *ask, const ask_view *view);

@@ -7,6 +7,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#define ASK_PAVEMENT 4.0 /* m beside a carriageway that belong to its street */
+
 enum { ASK_WAITING = 8, ASK_KEPT = 8, ASK_ROWS = 40 };
 
 typedef struct question {
@@ -17,6 +19,7 @@ typedef struct question {
 } question;
 
 struct asker {
+    const viewer_source *source;
     viewer_world *world;
     outbox *box;
     inbox *in; /* of its session: where it is told to go */

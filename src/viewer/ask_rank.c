@@ -1,6 +1,8 @@
 /* Who lights this: a place of the picture, or a region. */
 #include "viewer/ask_parts.h"
 
+#include "viewer/out.h"
+
 #include <nocturne/influence.h>
 
 #include <math.h>
@@ -180,6 +182,33 @@ static void rank(asker *a, const question *q, const noc_region *region, json_t *
 
 /* ---- places ---- */
 
+/* The command that asks the same. camera: where pixels say the region; else NULL. */
+static void add_command(const asker *a, const question *q, const char *region, const noc_camera *camera,
+                        const noc_region_params *of, json_t *about) {
+    char *line =
+        out_influence(a->source, a->world, &q->view.render, region, camera, of ? of->width : 0, of ? of->height : 0);
+    if (line)
+        json_object_set_new(about, "command", wire_text(line));
+    free(line);
+}
+
+/* A place of the scene in the CRS that its coordinates are asked in: that of the scene, where it has one. */
+static void to_asked(const asker *a, double place[3]) {
+    noc_scene_info info;
+    noc_scene_get_info(world_scene(a->world), &info);
+    if (*info.given_crs)
+        noc_scene_from_local(world_scene(a->world), NULL, place);
+}
+
+static void add_point_command(const asker *a, const question *q, const noc_hit *hit, json_t *about) {
+    double p[3] = { hit->place[0], hit->place[1], hit->place[2] };
+    const double *n = hit->normal;
+    char region[240];
+    to_asked(a, p);
+    snprintf(region, sizeof(region), "point:%.12g,%.12g,%.9g,%.9g,%.9g,%.9g", p[0], p[1], p[2], n[0], n[1], n[2]);
+    add_command(a, q, region, NULL, NULL, about);
+}
+
 static json_t *about_hit(const asker *a, const noc_hit *hit) {
     const char *object = hit->object < 0 ? NULL : noc_scene_object_name(world_scene(a->world), (size_t)hit->object);
     json_t *about = json_object();
@@ -222,6 +251,7 @@ void ask_pixel(asker *a, const question *q) {
     noc_patch patch = noc_hit_patch(&hit, 1, &ray[0], &ray[1]);
     noc_region *region = noc_region_create(a->log);
     json_t *about = about_hit(a, &hit);
+    add_point_command(a, q, &hit, about);
     if (region && !noc_region_add(region, &patch, 1))
         rank(a, q, region, about);
     else
@@ -236,10 +266,7 @@ static void write_polygon(FILE *out, const asker *a, const wire_ask *ask) {
     for (int i = 0; i <= ask->points; i++) {
         const double *p = ask->point[i % ask->points];
         double there[3] = { p[0], p[1], 0 };
-        noc_scene_info info;
-        noc_scene_get_info(world_scene(a->world), &info);
-        if (*info.given_crs)
-            noc_scene_from_local(world_scene(a->world), NULL, there);
+        to_asked(a, there);
         fprintf(out, "%s%.12g %.12g", i ? ", " : "", there[0], there[1]);
     }
     fputs("))", out);
@@ -266,20 +293,22 @@ static char *words_of(const asker *a, const wire_ask *ask, int w, int h) {
 }
 
 /* Of a picture with so few pixels that a rectangle of it asks for few rays. */
-static noc_region *find(asker *a, const question *q) {
+static noc_region *find(asker *a, const question *q, json_t *about) {
     double w = q->view.width, h = q->view.height, scale = fmin(1, sqrt(MOST_PIXELS / (w * h)));
     noc_region_params params = { .camera = &q->view.camera,
                                  .width = (int)fmax(1, w * scale),
                                  .height = (int)fmax(1, h * scale) };
     char *words = words_of(a, &q->ask, params.width, params.height);
     noc_region *region = words ? noc_region_find(a->ask_view, world_scene(a->world), words, &params, a->log) : NULL;
+    if (region)
+        add_command(a, q, words, q->ask.has_rect ? &q->view.camera : NULL, &params, about);
     free(words);
     return region;
 }
 
 /* ---- outlines ---- */
 
-enum { OUTLINE = 96 }; /* rays, about */
+enum { OUTLINE = 96, ROADS = 64 }; /* points of a ring, about; roads of a street that are outlined */
 
 /* Ray number i of count along the outline of what was asked. */
 static bool outline_ray(const question *q, double top, int i, int count, noc_ray *ray) {
@@ -299,8 +328,8 @@ static bool outline_ray(const question *q, double top, int i, int count, noc_ray
     return true;
 }
 
-/* Where the outline of a rectangle or a polygon lies in the scene; NULL: that of an object or street is not told. */
-static json_t *outline_of(asker *a, const question *q) {
+/* Where the outline of a rectangle or a polygon lies in the scene. */
+static json_t *drawn_ring(asker *a, const question *q) {
     int sides = q->ask.has_rect ? 4 : q->ask.points, count = sides ? sides * (1 + OUTLINE / sides) : 0;
     noc_ray *rays = calloc((size_t)count + 1, sizeof(*rays));
     noc_hit *hits = calloc((size_t)count + 1, sizeof(*hits));
@@ -318,19 +347,70 @@ static json_t *outline_of(asker *a, const question *q) {
     return list;
 }
 
+/* The convex outline of an object, at its lowest height. */
+static json_t *object_ring(const noc_region *region) {
+    double corner[OUTLINE / 2][3];
+    size_t count = noc_region_outline(region, corner, OUTLINE / 2);
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(list, ask_place(corner[i]));
+    return list;
+}
+
+/* So far to the left of point i of a road, on the ground. */
+static json_t *beside_road(asker *a, const noc_street *s, size_t i, double left) {
+    const float *p = s->points + 2 * i, *from = i ? p - 2 : p, *to = i + 1 < s->point_count ? p + 2 : p;
+    double d[2] = { (double)to[0] - from[0], (double)to[1] - from[1] }, length = fmax(hypot(d[0], d[1]), 1e-9);
+    double at[3] = { p[0] - left * d[1] / length, p[1] + left * d[0] / length, 0 };
+    noc_hit hit;
+    if (!noc_scene_ground(world_scene(a->world), at[0], at[1], &at[2]) && ask_top(a, at, &hit))
+        at[2] = hit.place[2];
+    return ask_place(at);
+}
+
+/* Up one side of a road and down the other, by every `step`th point and the last. */
+static json_t *road_ring(asker *a, const noc_street *s) {
+    size_t sides = s->point_count - 1, step = 1 + sides / (OUTLINE / 2), told = (sides + step - 1) / step + 1;
+    double half = s->width / 2 + ASK_PAVEMENT;
+    json_t *list = json_array();
+    for (size_t k = 0; k < 2 * told; k++) {
+        size_t i = k < told ? k : 2 * told - 1 - k;
+        i = i * step < sides ? i * step : sides;
+        json_array_append_new(list, beside_road(a, s, i, k < told ? half : -half));
+    }
+    return list;
+}
+
+/* Rings around what was asked. */
+static json_t *outline_of(asker *a, const question *q, const noc_region *region) {
+    json_t *list = json_array();
+    noc_street s;
+    if (q->ask.object)
+        json_array_append_new(list, object_ring(region));
+    else if (!q->ask.street)
+        json_array_append_new(list, drawn_ring(a, q));
+    for (size_t i = 0; q->ask.street && noc_scene_get_street(world_scene(a->world), i, &s); i++)
+        if (s.point_count > 1 && json_array_size(list) < ROADS &&
+            (!strcmp(s.name, q->ask.street) || !strcmp(s.id, q->ask.street)))
+            json_array_append_new(list, road_ring(a, &s));
+    return list;
+}
+
 void ask_region(asker *a, const question *q) {
-    noc_region *region = find(a, q);
+    json_t *about = json_object();
+    noc_region *region = find(a, q, about);
     if (!region) {
+        json_decref(about);
         ask_refuse(a, q, *a->wrong ? a->wrong : "there is no memory for it");
         return;
     }
     noc_region_info info;
     noc_region_get_info(region, &info);
-    json_t *about = json_object();
-    json_t *outline = outline_of(a, q);
+    json_t *outline = outline_of(a, q, region), *crs = ask_crs(a, info.centre);
     json_object_set_new(about, "place", ask_place(info.centre));
-    if (outline)
-        json_object_set_new(about, "outline", outline);
+    if (crs)
+        json_object_set_new(about, "crs", crs);
+    json_object_set_new(about, "outline", outline);
     if (!q->ask.has_rect)
         json_object_set_new(about, "area", ask_number(info.weight));
     rank(a, q, region, about);

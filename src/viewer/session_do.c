@@ -137,7 +137,7 @@ static void do_ask(session *s, const wire_ask *ask) {
     ask_view view = { s->mover.camera, s->width ? s->width : 1280, s->height ? s->height : 720, of->look.render };
     asker **one = ask->what == WIRE_FIND || ask->what == WIRE_NAME ? &s->namer : &s->asker;
     if (!*one)
-        *one = asker_create(s->setup->world, s->box, &s->in);
+        *one = asker_create(s->setup->source, s->setup->world, s->box, &s->in);
     if (*one)
         asker_ask(*one, ask, &view);
     else

@@ -306,6 +306,7 @@ static noc_camera camera;
     P(0, noc_region_add(NULL, NULL, 0) == NOC_ERR_ARGUMENT)                                                            \
     P(noc_region_get_info(NULL, &(noc_region_info){ 0 }), true)                                                        \
     P(noc_region_get_info(NULL, NULL), true)                                                                           \
+    P(0, noc_region_outline(NULL, NULL, 4) == 0)                                                                       \
     P(0, noc_region_find(NULL, NULL, NULL, NULL, NULL) == NULL)                                                        \
     P(0, noc_region_find(view, scene, NULL, NULL, NULL) == NULL)                                                       \
     P(0, noc_ranking_create(NULL, NULL, NULL) == NULL)                                                                 \

@@ -55,6 +55,7 @@ class Page(Opened):
             [row.cells[0].textContent, parseFloat(row.cells[1].textContent)])''')
         assert abs(sum(share for _, share in kinds) - 100) < 1, kinds
         assert any('lamp' in name for name, _ in kinds) and kinds == sorted(kinds, key=lambda one: -one[1]), kinds
+        assert 'nocturne influence' in page.evaluate("document.querySelector('.answer textarea.command').value")
         page.evaluate("document.querySelector('table.ranking tbody tr[tabindex]').focus()")
         page.key('Enter')  # the card of a light, and back
         page.wait("document.querySelector('.answer').innerText.includes('What it lights')")

@@ -180,7 +180,7 @@ export class Ask {
     // What is shown of a region until another one is asked about.
     #outline(region) {
         this.#region = region;
-        this.map.region = region?.values.polygon ?? null;
+        this.map.region = region?.values.polygon ? [region.values.polygon] : null;
         this.map.redraw();
         this.panes.draw();
     }
@@ -231,7 +231,7 @@ export class Ask {
         this.building.textContent = `Whole ${street ?? (object ? this.#kind(answer) : 'object')}`;
         if (answer.outline && this.#region && !this.#region.outline) {
             this.#region.outline = answer.outline;
-            this.map.region ??= answer.outline.map((place) => place.slice(0, 2));
+            this.map.region ??= answer.outline.map((ring) => ring.map((place) => place.slice(0, 2)));
         }
         if (answer.place) this.map.place = answer.place;
         if (what === 'lamp' && answer.place) this.app.highlight([{ light: answer.light, place: answer.place }]);
@@ -423,7 +423,20 @@ export class Ask {
             body,
         );
         const csv = answer.done >= 1 ? button('Save as CSV', () => this.app.save('csv', { of: this.#asked })) : null;
-        return [progress, table, csv].filter((one) => one);
+        return [progress, table, csv, answer.command ? this.#command(answer.command) : null].filter((one) => one);
+    }
+
+    // What asks the same in a terminal.
+    #command(line) {
+        const text = el('textarea', { class: 'command', readonly: true, rows: 3, 'aria-label': 'The same by command' });
+        text.value = line;
+        return el(
+            'div',
+            {},
+            el('h3', { text: 'The same by command' }),
+            text,
+            button('Copy command', () => this.app.emit('copy', 'Command line', line)),
+        );
     }
 
     #row(row, i, most) {
@@ -497,10 +510,12 @@ export class Ask {
                 (x1 - x0) * rect.width,
                 (y1 - y0) * rect.height,
             );
-        } else if (outline?.length) {
+        } else {
             context.setLineDash([6, 4]);
-            const points = [...outline, outline[0]].map((point) => this.panes.where(pane, point));
-            points.forEach((at, i) => at && context[points[i - 1] ? 'lineTo' : 'moveTo'](...at));
+            for (const ring of outline ?? []) {
+                const points = [...ring, ...ring.slice(0, 1)].map((point) => this.panes.where(pane, point));
+                points.forEach((at, i) => at && context[points[i - 1] ? 'lineTo' : 'moveTo'](...at));
+            }
         }
         context.stroke();
         context.setLineDash([]);

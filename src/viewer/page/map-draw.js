@@ -248,20 +248,23 @@ function cars(map, context) {
 }
 
 function regions(map, context) {
-    const points =
+    const drawn =
         map.drawing?.kind === 'rect' && map.drawing.points[1]
             ? ((a, b) => [a, [b[0], a[1]], b, [a[0], b[1]]])(...map.drawing.points)
             : map.drawing?.points.length
               ? map.drawing.points
-              : map.region;
-    if (!points) return;
+              : null;
+    const rings = drawn ? [drawn] : (map.region ?? []);
+    if (!rings.length) return;
     context.strokeStyle = context.fillStyle = '#7db4ff';
     context.lineWidth = 1.5;
     context.beginPath();
-    points.forEach((point, i) => context[i ? 'lineTo' : 'moveTo'](...map.to(point)));
-    if (!map.drawing || map.drawing.kind === 'rect') context.closePath();
+    for (const points of rings) {
+        points.forEach((point, i) => context[i ? 'lineTo' : 'moveTo'](...map.to(point)));
+        if (!map.drawing || map.drawing.kind === 'rect') context.closePath();
+    }
     context.stroke();
-    if (map.drawing) for (const point of points) context.fillRect(map.to(point)[0] - 3, map.to(point)[1] - 3, 6, 6);
+    if (map.drawing) for (const point of rings[0]) context.fillRect(map.to(point)[0] - 3, map.to(point)[1] - 3, 6, 6);
     context.globalAlpha = 0.12;
     context.fill();
     context.globalAlpha = 1;

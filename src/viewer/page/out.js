@@ -43,6 +43,7 @@ export class Out {
         );
         app.on('state', (state) => (this.command.value = state.command ?? ''));
         app.on('file', (file) => this.#download(file));
+        app.on('copy', (what, text) => this.copy(what, text));
     }
 
     copyLink() {
