@@ -1,6 +1,8 @@
 /* What is called so, and what things are called: search by name, and the name of what a pointer is over. */
 #include "viewer/ask_parts.h"
 
+#include "viewer/fold.h"
+
 #include <nocturne/influence.h>
 
 #include <math.h>
@@ -9,43 +11,117 @@
 #include <string.h>
 
 enum { FOUND = 12 };     /* of each kind, that are told */
-#define PAVEMENT 4.0     /* m beside a carriageway that belong to its street */
 #define FROM_ABOVE 100.0 /* m over the scene */
 
 /* ---- search ---- */
 
-/* A byte of a name without its case: ASCII, and letters of Latin-1 behind their first byte in UTF-8. */
-static unsigned char folded(const char *text, size_t i) {
-    unsigned char c = (unsigned char)text[i];
-    bool latin = i && (unsigned char)text[i - 1] == 0xc3 && c >= 0x80 && c <= 0x9e && c != 0x97;
-    return c >= 'A' && c <= 'Z' ? c + 32 : latin ? c | 0x20 : c;
-}
-
-/* 0: it is the name; 1: the name begins with it; 2: it is in the name; -1: it is not. */
-static int rank_of(const char *name, const char *text) {
-    size_t size = strlen(text), most = strlen(name);
-    for (size_t from = 0; size && from + size <= most; from++) {
-        size_t i = 0;
-        while (i < size && folded(name + from, i) == folded(text, i))
-            i++;
-        if (i == size)
-            return from ? 2 : size < most;
-    }
-    return -1;
-}
-
-/* The best of one kind, in the scene's order among equals. */
-typedef struct matches {
-    struct match {
+/* Names of one kind, and what each is the name of. */
+typedef struct names {
+    struct named {
         const char *name;
         size_t index;
+        char *folded; /* NULL: not yet */
+    } * of;
+    size_t count, room;
+} names;
+
+static void add_name(names *list, const char *name, size_t index) {
+    if (list->count == list->room) {
+        size_t room = list->room ? 2 * list->room : 64;
+        struct named *more = realloc(list->of, room * sizeof(*more));
+        if (!more)
+            return;
+        list->of = more;
+        list->room = room;
+    }
+    list->of[list->count++] = (struct named){ name, index, NULL };
+}
+
+static void free_names(names *list) {
+    for (size_t i = 0; i < list->count; i++)
+        free(list->of[i].folded);
+    free(list->of);
+}
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(((const struct named *)a)->name, ((const struct named *)b)->name);
+}
+
+/* Several roads make a street. */
+static void list_streets(const asker *a, names *list) {
+    noc_street s;
+    size_t kept = 0;
+    for (size_t i = 0; noc_scene_get_street(world_scene(a->world), i, &s); i++)
+        add_name(list, s.name, i);
+    if (list->count)
+        qsort(list->of, list->count, sizeof(*list->of), by_name);
+    for (size_t i = 0; i < list->count; i++)
+        if (!kept || strcmp(list->of[kept - 1].name, list->of[i].name) != 0)
+            list->of[kept++] = list->of[i];
+    list->count = kept;
+}
+
+/* The lights of one lamp follow one another and share its name. */
+static void list_lamps(const asker *a, names *list) {
+    noc_scene_info info;
+    const char *last = NULL;
+    noc_scene_get_info(world_scene(a->world), &info);
+    for (size_t i = 0; i < info.light_slots && !ask_stopped(a); i++) {
+        noc_light_info l;
+        if (noc_scene_get_light(world_scene(a->world), i, &l) || l.removed || !l.lamp || !l.light.name)
+            continue;
+        if (!last || strcmp(last, l.light.name))
+            add_name(list, l.light.name, i);
+        last = l.light.name;
+    }
+}
+
+/* The body of a lamp is no object of its own. */
+static void list_objects(const asker *a, names *list) {
+    names lamps = { 0 };
+    list_lamps(a, &lamps);
+    if (lamps.count)
+        qsort(lamps.of, lamps.count, sizeof(*lamps.of), by_name);
+    size_t slots = noc_scene_object_slots(world_scene(a->world));
+    for (size_t i = 0; i < slots && !ask_stopped(a); i++) {
+        struct named one = { noc_scene_object_name(world_scene(a->world), i), i, NULL };
+        if (one.name && !(lamps.count && bsearch(&one, lamps.of, lamps.count, sizeof(one), by_name)))
+            add_name(list, one.name, i);
+    }
+    free_names(&lamps);
+}
+
+static void list_groups(const asker *a, names *list) {
+    const noc_group_info *g;
+    for (size_t i = 0; (g = noc_report_get_group(world_report(a->world), i)); i++)
+        add_name(list, g->name, i);
+}
+
+static const struct {
+    const char *kind;
+    void (*list)(const asker *a, names *list);
+} kinds[] = {
+    { "street", list_streets }, { "object", list_objects }, { "lamp", list_lamps }, { "group", list_groups }
+};
+enum { KINDS = sizeof(kinds) / sizeof(*kinds), LAMPS = 2 };
+
+/* 0: it is the name; 1: the name begins with it; 2: it is in the name; -1: it is not. Both are folded. */
+static int rank_of(const char *name, const char *text) {
+    const char *at = *text ? strstr(name, text) : NULL;
+    return !at ? -1 : at != name ? 2 : name[strlen(text)] ? 1 : 0;
+}
+
+/* The best of one kind, in their order among equals. */
+typedef struct matches {
+    struct match {
+        const struct named *of;
         int rank;
     } best[FOUND];
     size_t count, all;
 } matches;
 
-static void offer(matches *m, const char *name, size_t index, const char *text) {
-    int rank = name ? rank_of(name, text) : -1;
+static void offer(matches *m, const struct named *of, const char *text) {
+    int rank = of->folded ? rank_of(of->folded, text) : -1;
     size_t at = m->count;
     if (rank < 0)
         return;
@@ -56,92 +132,64 @@ static void offer(matches *m, const char *name, size_t index, const char *text) 
         return;
     m->count += m->count < FOUND;
     memmove(m->best + at + 1, m->best + at, (m->count - at - 1) * sizeof(*m->best));
-    m->best[at] = (struct match){ name, index, rank };
+    m->best[at] = (struct match){ of, rank };
 }
 
-static json_t *add_found(json_t *list, const char *kind, const char *name) {
+static void add_found(const asker *a, json_t *list, int kind, const struct named *of) {
     json_t *one = json_object();
-    json_object_set_new(one, "kind", json_string(kind));
-    json_object_set_new(one, "name", wire_text(name));
-    json_array_append_new(list, one);
-    return one;
-}
-
-static size_t find_groups(const asker *a, const char *text, json_t *list) {
-    matches m = { 0 };
-    const noc_group_info *g;
-    for (size_t i = 0; (g = noc_report_get_group(world_report(a->world), i)); i++)
-        offer(&m, g->name, i, text);
-    for (size_t i = 0; i < m.count; i++)
-        add_found(list, "group", m.best[i].name);
-    return m.all - m.count;
-}
-
-static int by_name(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
-
-/* Several roads make a street. */
-static size_t find_streets(const asker *a, const char *text, json_t *list) {
-    matches m = { 0 };
-    noc_street s;
-    size_t count = 0, kept = 0;
-    while (noc_scene_get_street(world_scene(a->world), count, &s))
-        count++;
-    const char **names = malloc((count + 1) * sizeof(*names));
-    for (size_t i = 0; names && i < count && !ask_stopped(a); i++)
-        if (noc_scene_get_street(world_scene(a->world), i, &s) && rank_of(s.name, text) >= 0)
-            names[kept++] = s.name;
-    if (names)
-        qsort(names, kept, sizeof(*names), by_name);
-    for (size_t i = 0; i < kept; i++)
-        if (!i || strcmp(names[i - 1], names[i]) != 0)
-            offer(&m, names[i], i, text);
-    free(names);
-    for (size_t i = 0; i < m.count; i++)
-        add_found(list, "street", m.best[i].name);
-    return m.all - m.count;
-}
-
-static size_t find_objects(const asker *a, const char *text, json_t *list) {
-    matches m = { 0 };
-    size_t slots = noc_scene_object_slots(world_scene(a->world));
-    for (size_t i = 0; i < slots && !ask_stopped(a); i++)
-        offer(&m, noc_scene_object_name(world_scene(a->world), i), i, text);
-    for (size_t i = 0; i < m.count; i++)
-        add_found(list, "object", m.best[i].name);
-    return m.all - m.count;
-}
-
-/* The lights of one lamp follow one another and share its name. */
-static size_t find_lamps(const asker *a, const char *text, json_t *list) {
-    matches m = { 0 };
-    noc_scene_info info;
-    const char *last = NULL;
-    noc_scene_get_info(world_scene(a->world), &info);
-    for (size_t i = 0; i < info.light_slots && !ask_stopped(a); i++) {
-        noc_light_info l;
-        if (noc_scene_get_light(world_scene(a->world), i, &l) || l.removed || !l.lamp || !l.light.name)
-            continue;
-        if (!last || strcmp(last, l.light.name))
-            offer(&m, l.light.name, i, text);
-        last = l.light.name;
-    }
-    for (size_t i = 0; i < m.count; i++) {
-        noc_light_info l;
-        json_t *one = add_found(list, "lamp", m.best[i].name);
-        json_object_set_new(one, "light", json_integer((json_int_t)m.best[i].index));
-        if (!noc_scene_get_light(world_scene(a->world), m.best[i].index, &l))
+    noc_light_info l;
+    json_object_set_new(one, "kind", json_string(kinds[kind].kind));
+    json_object_set_new(one, "name", wire_text(of->name));
+    if (kind == LAMPS) {
+        json_object_set_new(one, "light", json_integer((json_int_t)of->index));
+        if (!noc_scene_get_light(world_scene(a->world), of->index, &l))
             json_object_set_new(one, "place", ask_place(l.centre));
     }
+    json_array_append_new(list, one);
+}
+
+/* The best of a kind are added to the list; how many more there are. */
+static size_t find_kind(const asker *a, int kind, names *of, const char *text, json_t *list) {
+    matches m = { 0 };
+    for (size_t i = 0; i < of->count && !ask_stopped(a); i++) {
+        of->of[i].folded = fold_name(of->of[i].name, true);
+        offer(&m, &of->of[i], text);
+    }
+    for (size_t i = 0; i < m.count; i++)
+        add_found(a, list, kind, m.best[i].of);
     return m.all - m.count;
+}
+
+/* The name of a kind that may have been meant. */
+static void add_nearest(const asker *a, int kind, const names *of, const char *text, json_t *list) {
+    const char **folded = malloc((of->count + 1) * sizeof(*folded));
+    for (size_t i = 0; folded && i < of->count; i++)
+        folded[i] = of->of[i].folded ? of->of[i].folded : "";
+    const char *nearest = folded && !ask_stopped(a) ? noc_text_nearest(text, folded, of->count) : NULL;
+    for (size_t i = 0; nearest && i < of->count; i++)
+        if (folded[i] == nearest) {
+            add_found(a, list, kind, &of->of[i]);
+            break;
+        }
+    free(folded);
 }
 
 void ask_find(asker *a, const question *q) {
-    json_t *m = ask_begin(q, 1), *list = json_array();
-    size_t more = find_streets(a, q->ask.text, list);
-    more += find_objects(a, q->ask.text, list);
-    more += find_lamps(a, q->ask.text, list);
-    more += find_groups(a, q->ask.text, list);
-    json_object_set_new(m, "found", list);
+    json_t *m = ask_begin(q, 1), *found = json_array(), *near = json_array();
+    names of[KINDS] = { 0 };
+    char *text = fold_name(q->ask.text, false);
+    size_t more = 0;
+    for (int k = 0; k < KINDS && text && *text; k++) {
+        kinds[k].list(a, &of[k]);
+        more += find_kind(a, k, &of[k], text, found);
+    }
+    for (int k = 0; k < KINDS && text && *text && !json_array_size(found); k++)
+        add_nearest(a, k, &of[k], text, near);
+    for (int k = 0; k < KINDS; k++)
+        free_names(&of[k]);
+    free(text);
+    json_object_set_new(m, "found", found);
+    json_object_set_new(m, "near", near);
     json_object_set_new(m, "more", json_integer((json_int_t)more));
     ask_send(a, q, m);
 }
@@ -177,7 +225,7 @@ const char *ask_street_of(const asker *a, const noc_hit *hit) {
         return NULL;
     for (size_t i = 0; noc_scene_get_street(world_scene(a->world), i, &s); i++) {
         double away = beside(&s, hit->place) - s.width / 2;
-        if (away > (paved ? PAVEMENT : 0) || away >= best)
+        if (away > (paved ? ASK_PAVEMENT : 0) || away >= best)
             continue;
         best = away;
         name = s.name;

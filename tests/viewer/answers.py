@@ -1,6 +1,9 @@
 """What `nocturne view` answers: who lights a place, names, outlines, cards of lamps."""
 import json
+import os
+import shlex
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -104,6 +107,45 @@ def test_names_are_found(p):
     c.close()
 
 
+def test_search_folds_and_offers_the_nearest(p):
+    """However a name is spelled; what is not there is answered by the nearest; a lamp is listed once."""
+    names = ["Karl-Marx-Straße", "Münchener Str.", "Goethestrasse", "Am Müllerweg"]
+    features = [{"type": "Feature", "properties": {"highway": "residential", "name": name},
+                 "geometry": {"type": "LineString", "coordinates": [[11.42, 48.76 + 0.001 * i],
+                                                                    [11.421, 48.76 + 0.001 * i]]}}
+                for i, name in enumerate(names)]
+    features.append({"type": "Feature", "id": "node/777", "properties": {"highway": "street_lamp"},
+                     "geometry": {"type": "Point", "coordinates": [11.4205, 48.76003]}})
+    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
+        json.dump({"type": "FeatureCollection", "features": features}, file)
+        file.flush()
+        q = Program(file.name, "--map-surfaces", "--threads", "2")
+        try:
+            c = enter(q)
+
+            def found(text):
+                answer = ask(c, "find", id=1, text=text)
+                return [one["name"] for one in answer["found"] if one["kind"] == "street"]
+
+            for text in ("karl marx str", "KARL-MARX-STR.", "Karl Marx Strasse", "karl\u2013marx\u2013straße"):
+                assert found(text) == [names[0]], (text, found(text))
+            for text in ("munchener straße", "Muenchener", "MÜNCHENER STR", "mu\u0308nchener strasse"):
+                assert found(text) == [names[1]], (text, found(text))
+            assert found("Göthestr.") == [names[2]] and found("goethe") == [names[2]]
+            assert found("mueller") == [names[3]] and found("str. x") == []
+            assert sorted(found("straße")) == sorted(names[:3])
+            missed = ask(c, "find", id=2, text="Goethestrase")
+            assert missed["found"] == [] and missed["near"][0]["name"] == names[2], missed
+            assert ask(c, "find", id=3, text="qqqqqqqqqqqq")["near"] == []
+            lamps = ask(c, "find", id=4, text="node/777")["found"]
+            assert [one["kind"] for one in lamps] == ["lamp"] and len(lamps[0]["place"]) == 3, lamps
+            for text in ("", " ", "-", ".", "\u00c3", "str.str.str." * 8):
+                assert "found" in ask(c, "find", id=5, text=text)
+            c.close()
+        finally:
+            q.end()
+
+
 def test_long_names_are_whole(p):
     """A street is told from another one however late their names differ."""
     names = ["a" * 1000 + end for end in "bc"]
@@ -128,12 +170,94 @@ def test_long_names_are_whole(p):
 def test_regions_have_outlines(p):
     c = enter(p)
     answer = ask(c, "region", id=1, pane=0, rect=[0.4, 0.8, 0.6, 0.95])
-    assert len(answer["outline"]) > 30 and all(len(place) == 3 for place in answer["outline"])
+    assert len(answer["outline"]) == 1, answer["outline"]
+    assert len(answer["outline"][0]) > 30 and all(len(place) == 3 for place in answer["outline"][0])
     x, y = answer["place"][:2]
     square = [[x - 5, y - 5], [x + 5, y - 5], [x + 5, y + 5], [x - 5, y + 5]]
-    outline = ask(c, "region", id=2, polygon=square)["outline"]
+    outline, = ask(c, "region", id=2, polygon=square)["outline"]
     assert all(min(abs(abs(px - x) - 5), abs(abs(py - y) - 5)) < 0.01 for px, py, _ in outline), outline
     c.close()
+
+
+def test_objects_and_streets_have_outlines(p):
+    """Rings around what is asked, in bounds: a building's is around its middle, a street's as wide as its pavements."""
+    c = enter(p)
+    building = next(one for one in ask(c, "find", id=1, text="building")["found"] if one["kind"] == "object")
+    answer = ask(c, "region", id=2, object=building["name"])
+    ring, = answer["outline"]
+    assert 3 <= len(ring) <= 48 and len({place[2] for place in ring}) == 1, ring
+    assert ring[0][2] < answer["place"][2]
+    x, y = answer["place"][:2]
+    sides = [(a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y) for a, b in zip(ring, ring[1:] + ring[:1])]
+    assert all(side > 0 for side in sides), sides  # its middle is to the left of each side
+    roof = sum(one["area"] for one in answer["classes"] if one["class"] == "roof")
+    assert 0.5 * roof < sum(sides) / 2 < 3 * answer["area"], (sum(sides) / 2, answer["classes"])
+    street = ask(c, "region", id=3, street="Ring South")
+    assert 1 <= len(street["outline"]) <= 64 and all(4 <= len(ring) <= 200 for ring in street["outline"])
+    width = min(((ring[0][0] - ring[-1][0]) ** 2 + (ring[0][1] - ring[-1][1]) ** 2) ** 0.5
+                for ring in street["outline"])
+    assert 10 < width < 40, width
+    c.close()
+
+
+def carried_away(answer, *inputs):
+    """The answer's command, as a shell takes it apart, asks the same."""
+    words = shlex.split(answer["command"])
+    assert words[:2] == ["nocturne", "influence"] and set(inputs) <= set(words), words
+    told = subprocess.run([os.environ["NOC_PROGRAM"], *words[1:], "-q", "--json", "--error", "0.005", "--time", "20"],
+                          capture_output=True, text=True, timeout=300)
+    assert told.returncode == 0, (words, told.stderr)
+    there = json.loads(told.stdout)
+    within = 5 * (there["lux_error"] ** 2 + answer["lux_error"] ** 2) ** 0.5 + 1e-4 * there["lux"]
+    assert abs(there["lux"] - answer["lux"]) < within, (there["lux"], answer["lux"], within, words)
+    return there
+
+
+def test_commands_ask_the_same(p):
+    """A place, a rectangle, an object, a street and a polygon: the command of each brings the same illuminance. The
+    windows and the lamps are not as the program says by itself."""
+    q = Program(*hand.CITY, "--no-traffic", "--window-lit", "0.6")
+    try:
+        c = enter(q)
+        c.say("world", name="group.lamps", value="0.5,own")
+        said(c, "state", lambda m: "group" in m["command"])
+        place = ask(c, "pixel", id=1, pane=0, x=0.5, y=0.9)
+        x, y = place["place"][:2]
+        square = [[x - 4, y - 4], [x + 4, y - 4], [x + 4, y + 4], [x - 4, y + 4]]
+        asked = [place, ask(c, "region", id=2, pane=0, rect=[0.4, 0.8, 0.6, 0.95]),
+                 ask(c, "region", id=3, street="Ring South"), ask(c, "region", id=4, polygon=square)]
+        if "object" in place:
+            asked.append(ask(c, "region", id=5, object=place["object"]))
+        for answer in asked:
+            carried_away(answer, "builtin:city", "--no-traffic", "lamps=0.5,own")
+        c.close()
+    finally:
+        q.end()
+
+
+def test_commands_speak_the_scenes_crs(p):
+    """Where the scene has a CRS, a place and a polygon are said in it, and so is the middle of what was asked."""
+    features = [{"type": "Feature", "properties": {"highway": "residential", "name": "Markt-Straße", "lit": "yes"},
+                 "geometry": {"type": "LineString", "coordinates": [[11.42, 48.76], [11.421, 48.76]]}},
+                {"type": "Feature", "properties": {"highway": "street_lamp", "id": "node/7"},
+                 "geometry": {"type": "Point", "coordinates": [11.4205, 48.76003]}}]
+    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
+        json.dump({"type": "FeatureCollection", "features": features}, file)
+        file.flush()
+        q = Program(file.name, "--map-surfaces", "--threads", "2")
+        try:
+            c = enter(q)
+            street = ask(c, "region", id=1, street="Markt-Straße")
+            assert "EPSG" in street["crs"]["name"] and street["crs"]["place"][1] > 5e6, street["crs"]
+            carried_away(street)
+            x, y = street["place"][:2]
+            square = ask(c, "region", id=2, polygon=[[x - 3, y - 3], [x + 3, y - 3], [x + 3, y + 3], [x - 3, y + 3]])
+            assert "POLYGON((" in square["command"] and near(square["crs"]["place"], street["crs"]["place"], 3), square
+            there = carried_away(square)
+            assert "EPSG" in there["crs"], there["crs"]
+            c.close()
+        finally:
+            q.end()
 
 
 def test_a_card_tells_what_a_lamp_lights(p):

@@ -47,7 +47,8 @@ export class Find {
             if (answer.refused) return this.#show([], answer.refused);
             const more = answer.more ? ` and ${answer.more} more` : '';
             const count = answer.found.length;
-            this.#show(answer.found, count ? `${count} found${more}` : 'Nothing is called so.');
+            const nearest = answer.near.length ? 'Nothing is called so. The nearest names:' : 'Nothing is called so.';
+            this.#show(count ? answer.found : answer.near, count ? `${count} found${more}` : nearest);
         });
     }
 
