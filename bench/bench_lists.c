@@ -3,14 +3,16 @@
  *   bench_lists [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE.exr [REFERENCE_FRAMES]]]]]]
  *
  * SCENE may also be lamps:N, N windows and lamps on a plain of boxes. First the structure: seconds and bytes a light;
- * then microseconds a tile for the list alone (one thread, median of FRAMES rounds over all tiles). With a reference,
- * relMSE of single frames of ris with one ray (mean over FRAMES seeds): of the choice alone (no shadows: against the
- * unshadowed truth) and of the picture, clamped to 10 cd/m2 and not. A reference that is not there yet is rendered by
- * lists of 128 + 128, REFERENCE_FRAMES of them, with and without shadows (REFERENCE.exr.free.exr). */
+ * then microseconds a tile for the list alone, and for what its pixels do to choose among its entries (one thread, the
+ * least and the median of FRAMES rounds over all tiles, where nothing is learned yet), as in both presets. With a
+ * reference, relMSE of single frames of ris with one ray (mean over FRAMES seeds): of the choice alone (no shadows:
+ * against the unshadowed truth) and of the picture, clamped to 10 cd/m2 and not. A reference that is not there yet is
+ * rendered by lists of 128 + 128, REFERENCE_FRAMES of them, with and without shadows (REFERENCE.exr.free.exr). */
 #include "bench_scene.h"
 #include "../tests/own_view.h"
 
 #include "../tests/backend/cpu_view.h"
+#include "core/learned.h"
 #include "core/random.h"
 
 #include <math.h>
@@ -94,13 +96,35 @@ static noc_render_params params_of(int width, int height, noc_method method, int
     return p;
 }
 
+/* The rays of a tile's blocks over its list. */
+static void share_tile(cpu_view *e, const struct core_context *frame, const gblock *const *g, const uint32_t *lanes,
+                       int blocks) {
+    struct core_context ctx = *frame;
+    list_pass *lists = e->workers[0].lists;
+    const light_list *list = &lists->build.list;
+    priors *of = &lists->rays.cell[0].priors;
+    ctx.at.lists = &lists->build;
+    e->kernels->list_fill(&ctx);
+    for (uint32_t i = 0; i < list->count; i++) {
+        list_prior b = list_prior_of(list->weight[i], LEARNED_UNKNOWN);
+        of->share[i] = b.share;
+        of->expect[i] = b.expect;
+    }
+    for (int i = 0; i < blocks; i++)
+        if (lanes[i] && list->count)
+            e->kernels->list_share(&ctx, g[i], lanes[i], 4 * i, 0, 1, of, &lists->rays.asked);
+}
+
 /* Time of the lists alone: primary hits once, then every tile's list in one thread. */
-static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, int height, int rounds) {
+static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, int height, int rounds, int list,
+                       int tail, int rays) {
     void *state = NULL;
     if (!(state = open_cpu_view(s, 0, NULL)))
         return false;
     cpu_view *e = state;
-    noc_render_params p = params_of(width, height, NOC_METHOD_RIS, 32, true);
+    noc_render_params p = params_of(width, height, NOC_METHOD_RIS, list, true);
+    p.tail = tail;
+    p.shadow_rays = rays;
     noc_plan plan = { .stages = { { .passes = { NOC_PASS_PRIMARY }, .count = 1 } },
                       .count = 1,
                       .draws = true,
@@ -128,8 +152,11 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
                                 .materials = s->material_records.data,
                                 .clusters = { e->sources.clusters[0], e->sources.clusters[1] } };
     double *us = noc_alloc((size_t)rounds * sizeof(*us)), entries = 0;
+    double *shared = noc_alloc((size_t)rounds * sizeof(*shared));
+    list_pass *lists = e->workers[0].lists;
     size_t tiles = 0;
     for (int round = 0; round < rounds; round++) {
+        double sharing = 0;
         tiles = 0;
         entries = 0;
         double start = noc_cpu_seconds();
@@ -146,16 +173,22 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
             if (!any)
                 continue;
             u32 key = rng_key(1, (uint32_t)t, (uint32_t)round);
-            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &e->workers[0].lists->build);
-            entries += e->workers[0].lists->build.list.count;
+            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &lists->build);
+            entries += lists->build.list.count;
             tiles++;
+            double before = noc_cpu_seconds();
+            share_tile(e, &ctx, g, lanes, n);
+            sharing += noc_cpu_seconds() - before;
         }
-        us[round] = 1e6 * (noc_cpu_seconds() - start) / (double)NOC_MAX(tiles, 1);
+        us[round] = 1e6 * (noc_cpu_seconds() - start - sharing) / (double)NOC_MAX(tiles, 1);
+        shared[round] = 1e6 * sharing / (double)NOC_MAX(tiles, 1);
     }
     qsort(us, (size_t)rounds, sizeof(*us), bench_by_size);
-    printf("%zu tiles, %.1f entries each: %.2f us a tile (%s)\n", tiles, entries / (double)NOC_MAX(tiles, 1),
-           us[rounds / 2], e->kernels->name);
+    qsort(shared, (size_t)rounds, sizeof(*shared), bench_by_size);
+    printf("%zu tiles, %.1f entries each: built in %.2f (%.2f) us a tile, rays shared out in %.2f (%.2f) (%s)\n", tiles,
+           entries / (double)NOC_MAX(tiles, 1), us[0], us[rounds / 2], shared[0], shared[rounds / 2], e->kernels->name);
     free(us);
+    free(shared);
     close_cpu_view(state);
     return true;
 }
@@ -222,7 +255,8 @@ int main(int argc, char **argv) {
         strncmp(spec, "lamps:", 6) ? bench_scene(spec, log) : lamps(NOC_CLAMP(atoi(spec + 6), 1, 50000000), log);
     noc_camera camera;
     bool ok = s && noc_scene_camera(s, bench_view(view), (double)width / height, &camera) == NOC_OK &&
-              time_lists(s, &camera, width, height, frames);
+              time_lists(s, &camera, width, height, frames, 32, 32, 4) &&
+              time_lists(s, &camera, width, height, frames, 64, 128, 8);
     for (int shadows = 0; ok && argc > 6 && shadows < 2; shadows++) {
         char *path = noc_format(shadows ? "%s" : "%s.free.exr", argv[6]);
         noc_image *want = reference(s, &camera, width, height, most, path, shadows, log);

@@ -43,9 +43,8 @@ typedef struct list_kept list_kept;
 FN list_prior prior_load(CTX u1 i); /* of entry i, for the surfaces at hand */
 FN u32 entry_light(CTX u32 i);
 FN real entry_weight(CTX u32 i);
-FN void weighed_store(CTX u1 i, real weighed); /* steer * share of entry i */
-FN real weighed_load(CTX u1 i);
-FN real weighed_at(CTX u32 i);
+FN void summed_store(CTX u1 i, real sum); /* steer * share of all entries before i */
+FN real summed_at(CTX u32 i);
 FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times); /* ray number `ray` of the lanes in `on` */
 FN real drawn_times(CTX u1 ray);                                  /* 0: no such ray */
 FN real found_p(CTX u1 ray);                                      /* of the list_ray */
@@ -79,15 +78,16 @@ FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
     sketch_surf q = sketch_surf_of(s);
     for (u1 i = 0u; i < count; i++) {
+        summed_store(PASS i, sums.all);
         list_prior b = prior_load(PASS i);
         real p = list_steer(PASS s, q, on, i, shift_u, shift_v);
         EXACT real w = p * K(b.share);
-        weighed_store(PASS i, w);
         EXACT real all = sums.all + w;
         EXACT real bright = sums.bright + p * K(b.expect);
         sums.all = all;
         sums.bright = bright;
     }
+    summed_store(PASS count, sums.all);
     return sums;
 }
 
@@ -101,45 +101,39 @@ FN real list_draws(list_sums sums, f1 rays, f1 brightness, real rounding) {
     return sel(sums.all > K(0.0f), n, K(0.0f));
 }
 
+/* The entry where `goal` falls: the last one before which no more than that has been summed up. A goal that rounding
+ * has pushed past the end is of the last entry with any weight. */
+FN u32 list_entry_at(CTX u1 count, real end, real goal) {
+    u32 entry = KU(0u);
+    for (u1 step = U32(LIST_ROOM) / 2u; step > 0u; step = step / 2u) {
+        u32 next = entry + KU(step);
+        mask there = next < KU(count);
+        real sum = summed_at(PASS selu(there, next, KU(0u)));
+        entry = selu(and_(there, and_(sum <= goal, sum < end)), next, entry);
+    }
+    return entry;
+}
+
 /* Systematic draws: draw k < n is of the entry where the share (k + start) / n of all the weights lies. Draws of one
  * entry follow each other and are one ray. Returns the number of rays. */
 FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
     EXACT real step = sums.all / max_(n, K(1.0f));
-    EXACT real next = step * start;
-    real sum = K(0.0f);
-    real drawn = K(0.0f);
-    u32 held = KU(0u); /* the last entry with any weight, */
-    u32 last = KU(0u); /* and the last that was drawn, so often */
-    real last_times = K(0.0f);
+    EXACT real goal = step * start;
+    real end = summed_at(PASS KU(count));
+    u32 last = KU(LIST_ROOM);
+    real times = K(0.0f);
     u32 rays = KU(0u);
-    for (u1 i = 0u; i < count; i++) {
-        real x = weighed_load(PASS i);
-        EXACT real more = sum + x;
-        sum = more;
-        held = selu(x > K(0.0f), KU(i), held);
-        mask over = and_(sum > next, drawn < n);
-        if (ANY(over)) {
-            real times = K(0.0f);
-            while (ANY(over)) {
-                times = sel(over, times + K(1.0f), times);
-                drawn = sel(over, drawn + K(1.0f), drawn);
-                EXACT real beyond = next + step;
-                next = sel(over, beyond, next);
-                over = and_(sum > next, drawn < n);
-            }
-            mask some = times > K(0.0f);
-            drawn_store(PASS rays, some, KU(i), times);
-            rays = selu(some, rays + KU(1u), rays);
-            last = selu(some, KU(i), last);
-            last_times = sel(some, times, last_times);
-        }
-    }
-    mask rest = drawn < n; /* rounding has pushed them past the end */
-    if (ANY(rest)) {
-        mask same = and_(rays > KU(0u), last == held);
-        u32 ray = selu(same, rays - KU(1u), rays);
-        drawn_store(PASS ray, rest, held, n - drawn + sel(same, last_times, K(0.0f)));
-        rays = selu(rest, ray + KU(1u), rays);
+    mask on = n > K(0.0f);
+    for (real drawn = K(0.0f); ANY(on); on = drawn < n) {
+        u32 entry = list_entry_at(PASS count, end, goal);
+        mask same = entry == last;
+        times = sel(same, times, K(0.0f)) + K(1.0f);
+        rays = selu(and_(on, not_(same)), rays + KU(1u), rays);
+        last = entry;
+        drawn_store(PASS rays - KU(1u), on, entry, times);
+        EXACT real beyond = goal + step;
+        goal = beyond;
+        drawn = drawn + K(1.0f);
     }
     return rays;
 }
@@ -147,7 +141,8 @@ FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
 /* The ray to an entry that was drawn so often. There is none to a place that brings nothing. */
 FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, u32 entry, real times) {
     list_ray r;
-    EXACT real w = times * sums.all / (n * weighed_at(PASS entry)) * entry_weight(PASS entry);
+    EXACT real weighed = summed_at(PASS entry + KU(1u)) - summed_at(PASS entry); /* as it was drawn, to the bit */
+    EXACT real w = times * sums.all / (n * weighed) * entry_weight(PASS entry);
     r.light = entry_light(PASS entry);
     r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);
     r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), entry);

@@ -168,10 +168,87 @@ FN u1 pixels_in_front(CTX u1 block, u1 pixels) {
     return front;
 }
 
+/* Blocks that follow each other share one patch where they face alike (a cosine of at least) and it is no wider than
+ * lamps are high (m, its radius at most): scoring costs by the patch. */
+#define PATCH_FACING 0.95f
+#define PATCH_RADIUS 1.0f
+
+FN1 f1 distance1(f3 a, f3 b) {
+    f3 d = F3(a.x - b.x, a.y - b.y, a.z - b.z);
+    EXACT f1 far = sqrt1(dot1(d, d));
+    return far;
+}
+
+/* Whether two patches may be one. */
+FN1 b1 patches_alike(list_patch a, list_patch b) {
+    EXACT f1 wide = distance1(a.c, b.c) + a.radius + b.radius;
+    return dot1(a.axis, b.axis) >= PATCH_FACING && max1(a.spread, b.spread) <= 0.5f && a.alpha2 == b.alpha2 &&
+           wide <= 2.0f * PATCH_RADIUS;
+}
+
+/* The sine of the angle between two directions, and a little. */
+FN1 f1 sine_between(f3 a, f3 b) {
+    EXACT f1 x = a.y * b.z - a.z * b.y;
+    EXACT f1 y = a.z * b.x - a.x * b.z;
+    EXACT f1 z = a.x * b.y - a.y * b.x;
+    EXACT f1 sine = sqrt1(x * x + y * y + z * z) + 1e-4f;
+    return sine;
+}
+
+FN1 f3 unit1(f3 a) {
+    EXACT f1 len = sqrt1(dot1(a, a)) + 1e-10f;
+    EXACT f1 x = a.x / len;
+    EXACT f1 y = a.y / len;
+    EXACT f1 z = a.z / len;
+    return F3(x, y, z);
+}
+
+FN1 f1 mean1(f1 a, f1 b, f1 share) {
+    EXACT f1 x = a + (b - a) * share;
+    return x;
+}
+
+FN1 f3 mean3(f3 a, f3 b, f1 share) {
+    return F3(mean1(a.x, b.x, share), mean1(a.y, b.y, share), mean1(a.z, b.z, share));
+}
+
+/* Around two patches that are alike. share: pixels, so far. */
+FN1 list_patch join_patches(list_patch a, list_patch b, f3 eye) {
+    list_patch t = a;
+    EXACT f1 apart = distance1(a.c, b.c) + 1e-10f;
+    EXACT f1 radius = max1(max1(0.5f * (apart + a.radius + b.radius), a.radius), b.radius);
+    EXACT f1 along = min1(max1((radius - a.radius) / apart, 0.0f), 1.0f);
+    EXACT f1 of_b = b.share / (a.share + b.share);
+    t.c = mean3(a.c, b.c, along);
+    EXACT f1 wide = max1(distance1(a.c, t.c) + a.radius, distance1(b.c, t.c) + b.radius) * 1.0001f;
+    t.radius = wide; /* around the centre as it was rounded */
+    t.axis = unit1(mean3(a.axis, b.axis, of_b));
+    /* sin(a + b) <= sin(a) + sin(b) */
+    EXACT f1 spread_a = a.spread + sine_between(t.axis, a.axis);
+    EXACT f1 spread_b = b.spread + sine_between(t.axis, b.axis);
+    t.spread = max1(spread_a, spread_b);
+    t.share = a.share + b.share;
+    t.reflectance = mean1(a.reflectance, b.reflectance, of_b);
+    t.gloss = mean1(a.gloss, b.gloss, of_b);
+    t.wo = unit1(F3(eye.x - t.c.x, eye.y - t.c.y, eye.z - t.c.z));
+    return t;
+}
+
+/* Stores a patch of so many (its share) of all pixels. */
+FN1 void patch_finish(CTX u1 i, list_patch t, f1 all) {
+    EXACT f1 share = sqrt1(t.share / all);
+    t.share = share;
+    t.reflectance = t.reflectance * share;
+    t.gloss = t.gloss * share;
+    patch_store(PASS i, t);
+}
+
 /* Makes the patches of a tile of so many blocks. Returns how many. */
 CALL u1 make_patches(CTX u1 blocks, f3 eye) {
     u1 all = 0u;
     u1 count = 0u;
+    list_patch held; /* the last one, which others may join; none: nothing is held yet */
+    b1 none = true;
     for (u1 b = 0u; b < blocks; b++)
         all = all + bit_count(tile_pixels(PASS b));
     for (u1 b = 0u; b < blocks; b++) {
@@ -183,14 +260,23 @@ CALL u1 make_patches(CTX u1 blocks, f3 eye) {
                 pixels_of = pixels & ~front;
             if (pixels_of != 0u) {
                 list_patch t = bound_patch(PASS b, pixels_of, eye);
-                EXACT f1 share = sqrt1(F32(bit_count(pixels_of)) / F32(all));
-                t.share = share;
-                t.reflectance = t.reflectance * share;
-                t.gloss = t.gloss * share;
-                patch_store(PASS count, t);
-                count++;
+                t.share = F32(bit_count(pixels_of));
+                if (!none && patches_alike(held, t)) {
+                    held = join_patches(held, t, eye);
+                } else {
+                    if (!none) {
+                        patch_finish(PASS count, held, F32(all));
+                        count++;
+                    }
+                    held = t;
+                    none = false;
+                }
             }
         }
+    }
+    if (!none) {
+        patch_finish(PASS count, held, F32(all));
+        count++;
     }
     return count;
 }

@@ -37,7 +37,7 @@ uint sum_of_group(uint x) {
 uint tile_; /* of this invocation; and of its pixel, the block and the place in it */
 uint block_;
 uint place_;
-float weighed_[LIST_ROOM];
+float summed_[LIST_ROOM + 1];
 
 uint wu(uint at) { return mem.word[at]; }
 float wf(uint at) { return uintBitsToFloat(mem.word[at]); }
@@ -213,9 +213,8 @@ list_sketch sketch_load(uint i) {
     return list_sketch(vec3(f[0], f[1], f[2]), f[3], vec3(f[4], f[5], f[6]), sketch_shape(i), vec3(f[8], f[9], f[10]));
 }
 float entry_weight(uint i) { return entry_load(i).weight; }
-void weighed_store(uint i, float weighed) { weighed_[i] = weighed; }
-float weighed_load(uint i) { return weighed_[i]; }
-float weighed_at(uint i) { return weighed_load(i); }
+void summed_store(uint i, float sum) { summed_[i] = sum; }
+float summed_at(uint i) { return summed_[i]; }
 void drawn_store(uint ray, bool on, uint entry, float times) {
     if (on) {
         put(ray_answer(ray, uint(RAY_ENTRY)), entry);

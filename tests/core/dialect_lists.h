@@ -21,13 +21,13 @@
 /* The tile at hand, and of the pixels at hand: what they weigh, draw and find. */
 #if defined(CORE_GLSL)
 u1 dialect_number;
-real dialect_weighed[PIXEL_ENTRIES];
+real dialect_summed[PIXEL_ENTRIES + 1u];
 u32 dialect_drawn[PIXEL_RAYS];
 real dialect_times[PIXEL_RAYS];
 list_ray dialect_found[PIXEL_RAYS];
 #else
 static u1 dialect_number;
-static real dialect_weighed[PIXEL_ENTRIES];
+static real dialect_summed[PIXEL_ENTRIES + 1u];
 static u32 dialect_drawn[PIXEL_RAYS];
 static real dialect_times[PIXEL_RAYS];
 static list_ray dialect_found[PIXEL_RAYS];
@@ -134,9 +134,13 @@ FN u1 tile_pixels(CTX u1 block) {
         return tile_bits(dialect_number, 100u) & 0xffffu;
     return 0x0f0fu * (dialect_number & 1u);
 }
-/* Every fourth tile sees something far behind, of every eighth the normals cancel out. */
+/* Every fourth tile sees something far behind, of every eighth the normals cancel out. In every fourth, blocks 0 and 1
+ * lie at one place. */
 FN list_point tile_point(CTX u1 block, u1 place) {
     list_point q;
+    u1 material = block + place;
+    if ((dialect_number & 3u) == 2u && block == 1u)
+        block = 0u;
     f3 corner = tile_point3(101u + 3u * block, 20.0f);
     b1 behind = (dialect_number & 3u) == 0u && (place & 3u) > 1u;
     f3 n = tile_unit(110u + 3u * block + (place & shr(dialect_number, 4) & 1u));
@@ -147,7 +151,7 @@ FN list_point tile_point(CTX u1 block, u1 place) {
         n = F3(0.0f - n.x, 0.0f - n.y, 0.0f - n.z);
     q.p = F3(corner.x + 0.5f * F32(place & 3u), corner.y + 0.5f * F32(shr(place, 2)), corner.z + q.depth);
     q.n = n;
-    q.material = (block + place) & 3u;
+    q.material = material & 3u;
     return q;
 }
 FN list_material list_material_load(CTX u1 material) {
@@ -260,12 +264,11 @@ FN list_sketch sketch_load(CTX u1 i) {
     return k;
 }
 FN real entry_weight(CTX u32 i) { return K(1.0f) + rng(i, KU(2u)); }
-FN void weighed_store(CTX u1 i, real weighed) { dialect_weighed[i] = weighed; }
-FN real weighed_load(CTX u1 i) { return dialect_weighed[i]; }
-FN real weighed_at(CTX u32 i) {
-    real x = dialect_weighed[0];
-    for (u1 k = 1u; k < PIXEL_ENTRIES; k++)
-        x = sel(i == KU(k), dialect_weighed[k], x);
+FN void summed_store(CTX u1 i, real sum) { dialect_summed[i] = sum; }
+FN real summed_at(CTX u32 i) {
+    real x = dialect_summed[0];
+    for (u1 k = 1u; k <= PIXEL_ENTRIES; k++)
+        x = sel(i == KU(k), dialect_summed[k], x);
     return x;
 }
 FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
@@ -390,7 +393,7 @@ FN void put_f3(CTX u1 item, int slot, f3 a) {
     put_f1(PASS item, slot + 2, a.z);
 }
 
-/* Slots 35 to 51: the last patch. Returns how many there are. */
+/* Slots 35 to 51: the last patch; 93 to 100: joined with the first one. Returns how many there are. */
 FN1 u1 tile_patches(CTX u1 item, f3 eye) {
     u1 patches = make_patches(PASS 3u, eye);
     list_patch t = patch_load(PASS patches - 1u);
@@ -405,6 +408,11 @@ FN1 u1 tile_patches(CTX u1 item, f3 eye) {
     put_f3(PASS item, LISTS_FIRST + 47, t.wo);
     put_f1(PASS item, LISTS_FIRST + 50, t.gloss);
     put_f1(PASS item, LISTS_FIRST + 51, t.alpha2);
+    t = join_patches(patch_load(PASS 0u), t, eye);
+    put_f3(PASS item, LISTS_FIRST + 93, t.c);
+    put_f1(PASS item, LISTS_FIRST + 96, t.radius);
+    put_f3(PASS item, LISTS_FIRST + 97, t.axis);
+    put_f1(PASS item, LISTS_FIRST + 100, t.spread);
     return patches;
 }
 

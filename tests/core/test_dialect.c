@@ -178,6 +178,7 @@ static const struct {
     { LISTS_FIRST + 90, "sketch_target" },
     { LISTS_FIRST + 91, "sketch_gloss" },
     { LISTS_FIRST + 92, "quick_inverse_root" },
+    { LISTS_FIRST + 93, "join_patches" },
     { TEXTURES_FIRST, "texture_level" },
     { TEXTURES_FIRST + 1, "texture_albedo" },
     { TEXTURES_FIRST + 4, "texture_albedo, first level" },

@@ -6,7 +6,7 @@
 
 enum { ENTRIES = 200, RAYS = 64 };
 struct core_context {
-    float *weighed;
+    float *summed;
     uint32_t *rays, room; /* rays: how many were drawn */
     double *times;
 };
@@ -23,9 +23,8 @@ FN list_sketch sketch_load(CTX u1 i) { return (list_sketch){ .radius = 0 }; }
 FN u1 sketch_shape(CTX u1 i) { return SKETCH_NONE; }
 FN u32 entry_light(CTX u32 i) { return i; }
 FN real entry_weight(CTX u32 i) { return 1; }
-FN void weighed_store(CTX u1 i, real weighed) { ctx->weighed[i] = weighed; }
-FN real weighed_load(CTX u1 i) { return ctx->weighed[i]; }
-FN real weighed_at(CTX u32 i) { return ctx->weighed[i]; }
+FN void summed_store(CTX u1 i, real sum) { ctx->summed[i] = sum; }
+FN real summed_at(CTX u32 i) { return ctx->summed[i]; }
 FN real drawn_times(CTX u1 ray) { return 0; }
 FN real found_p(CTX u1 ray) { return 0; }
 FN real found_w(CTX u1 ray) { return 0; }
@@ -35,7 +34,7 @@ FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
     if (ray >= ctx->room)
         fail_msg("ray %u, where there is room for %u", ray, ctx->room);
     *ctx->rays = ray + 1;
-    *ctx->times += (double)times;
+    ctx->times[ray] = (double)times; /* each draw of an entry tells the ray anew */
 }
 
 /* What random numbers become: the largest, and what is around where a sum of it rounds up. */
@@ -68,17 +67,44 @@ static void fewer_draws(void **state) {
 static void rays_have_room(void **state) {
     for (uint32_t rays = 1; rays <= RAYS; rays++)
         for (size_t i = 0; i < sizeof(roundings) / sizeof(*roundings); i++) {
-            float weighed[ENTRIES];
+            float summed[ENTRIES + 1];
             uint32_t drawn = 0;
-            double times = 0;
-            const struct core_context context = { weighed, &drawn, 2 * rays, &times }, *ctx = &context;
+            double times[2 * RAYS] = { 0 }, all = 0;
+            const struct core_context context = { summed, &drawn, 2 * rays, times }, *ctx = &context;
             list_sums sums = { .all = 0, .bright = 0 };
+            summed[0] = 0;
             for (uint32_t k = 0; k < ENTRIES; k++)
-                sums.all += weighed[k] = 0.1f + (float)(k * 37 % 11);
+                summed[k + 1] = sums.all += 0.1f + (float)(k * 37 % 11);
             float n = list_draws(sums, (float)rays, 0.01f, roundings[i]);
             uint32_t made = list_share_out(PASS sums, ENTRIES, n, 1 - roundings[i]);
-            assert_true(made <= 2 * rays && made == drawn && times == (double)n);
+            for (uint32_t k = 0; k < made; k++)
+                all += times[k];
+            assert_true(made <= 2 * rays && made == drawn && all == (double)n);
         }
+}
+
+/* Entries without a weight are never drawn, at the ends neither, and a goal past the end is of the last one with some.
+ */
+static void searched(void **state) {
+    float summed[ENTRIES + 1];
+    const struct core_context context = { .summed = summed }, *ctx = &context;
+    for (uint32_t count = 1; count <= ENTRIES; count += 1 + count / 7) {
+        float end = 0;
+        uint32_t last = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            bool some = k % 3 == 1 || count < 3;
+            summed[k] = end;
+            end += some ? (float)(1 + k % 5) : 0;
+            last = some ? k : last;
+        }
+        summed[count] = end;
+        for (float goal = 0; goal < end; goal += 0.5f) {
+            u32 entry = list_entry_at(PASS count, end, goal);
+            assert_true(entry < count && summed[entry] <= goal && goal < summed[entry + 1]);
+        }
+        assert_int_equal(list_entry_at(PASS count, end, end), last);
+        assert_int_equal(list_entry_at(PASS count, end, 1.001f * end), last);
+    }
 }
 
 int main(void) {
@@ -86,6 +112,7 @@ int main(void) {
         cmocka_unit_test(most_draws),
         cmocka_unit_test(fewer_draws),
         cmocka_unit_test(rays_have_room),
+        cmocka_unit_test(searched),
     };
     return cmocka_run_group_tests_name("core/list_rays", tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@ enum { ENTRIES = 24, RAYS = 32 };
 struct core_context {
     light light[ENTRIES];
     list_sketch sketch[ENTRIES];
-    float weighed[ENTRIES];
+    float summed[ENTRIES + 1];
     uint32_t entry[RAYS];
     float times[RAYS];
     uint32_t drawn;
@@ -30,9 +30,8 @@ FN void sketch_store(CTX u1 first, int l, list_sketch k) {
 FN list_sketch sketch_load(CTX u1 i) { return ctx->sketch[i]; }
 FN u1 sketch_shape(CTX u1 i) { return ctx->sketch[i].shape; }
 FN list_prior prior_load(CTX u1 i) { return list_prior_of(entry_load(PASS i).weight, .25f * (float)(i % 5)); }
-FN void weighed_store(CTX u1 i, real weighed) { MINE->weighed[i] = weighed; }
-FN real weighed_load(CTX u1 i) { return ctx->weighed[i]; }
-FN real weighed_at(CTX u32 i) { return ctx->weighed[i]; }
+FN void summed_store(CTX u1 i, real sum) { MINE->summed[i] = sum; }
+FN real summed_at(CTX u32 i) { return ctx->summed[i]; }
 FN real drawn_times(CTX u1 ray) { return ctx->times[ray]; }
 FN real found_p(CTX u1 ray) { return 0; }
 FN real found_w(CTX u1 ray) { return 0; }
@@ -244,7 +243,8 @@ static void mean_over_starts(bool glossy, double *off, double *off_by_targets) {
                 double brings = entry % 3 ? (double)(r.p * r.w) / STARTS : 0;
                 have += brings;
                 if (r.p > 0)
-                    other += brings * (double)(ctx->weighed[entry] / (r.p * prior_load(PASS entry).share));
+                    other += brings * (double)((ctx->summed[entry + 1] - ctx->summed[entry]) /
+                                               (r.p * prior_load(PASS entry).share));
             }
         }
         *off = fmax(*off, fabs(have / want - 1));

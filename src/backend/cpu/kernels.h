@@ -141,12 +141,12 @@ typedef struct priors {
 
 /* What the pixels of a block ask for over their tile's list: core/list_rays.h. */
 typedef struct list_asked {
-    ALIGNED float weighed[LIST_ROOM][BLOCK]; /* what chooses each entry */
-    float all[BLOCK], bright[BLOCK];         /* list_sums */
-    float n[BLOCK];                          /* draws */
-    int most;                                /* rays of a lane at most */
-    uint32_t entry[MOST_SHADOW_RAYS][BLOCK]; /* of a lane's ray */
-    float times[MOST_SHADOW_RAYS][BLOCK];    /* drawn so often; 0: no such ray */
+    ALIGNED float summed[LIST_ROOM + 1][BLOCK]; /* what chooses entries, of all before each */
+    float all[BLOCK], bright[BLOCK];            /* list_sums */
+    float n[BLOCK];                             /* draws */
+    int most;                                   /* rays of a lane at most */
+    uint32_t entry[MOST_SHADOW_RAYS][BLOCK];    /* of a lane's ray */
+    float times[MOST_SHADOW_RAYS][BLOCK];       /* drawn so often; 0: no such ray */
 } list_asked;
 
 /* Rays of one block, a lane each. */

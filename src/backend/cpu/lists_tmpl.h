@@ -25,16 +25,7 @@ static void list_candidates(const struct core_context *ctx, const gblock *g, uin
 
 FN list_prior prior_load(CTX u1 i) { return (list_prior){ ctx->at.priors->share[i], ctx->at.priors->expect[i] }; }
 
-/* Each lane's own element. */
-FN real lane_reals(const float *from, u32 i) {
-    float x[LANES];
-    uint32_t at[LANES];
-    ustore(at, i);
-    for (int l = 0; l < LANES; l++)
-        x[l] = from[at[l]];
-    return rload(x);
-}
-FN real entry_weight(CTX u32 i) { return lane_reals(ctx->at.lists->list.weight, i); }
+FN real entry_weight(CTX u32 i) { return real_gather(ctx->at.lists->list.weight, i); }
 FN u32 entry_lights(CTX u1 first, int l, u1 count) {
     uint32_t at[LANES];
     for (uint32_t i = 0; i < LANES; i++)
@@ -54,17 +45,10 @@ FN list_sketch sketch_load(CTX u1 i) {
     return (list_sketch){ V3(K(k[0][i]), K(k[1][i]), K(k[2][i])), K(k[3][i]), V3(K(k[4][i]), K(k[5][i]), K(k[6][i])),
                           KU(sketch_shape(ctx, i)), V3(K(k[7][i]), K(k[8][i]), K(k[9][i])) };
 }
-FN u32 entry_light(CTX u32 i) {
-    uint32_t at[LANES];
-    ustore(at, i);
-    for (int l = 0; l < LANES; l++)
-        at[l] = ctx->at.lists->list.light[at[l]];
-    return uload(at);
-}
-FN void weighed_store(CTX u1 i, real weighed) { rstore(ctx->at.asked->weighed[i] + ctx->at.lane, weighed); }
-FN real weighed_load(CTX u1 i) { return rload(ctx->at.asked->weighed[i] + ctx->at.lane); }
-FN real weighed_at(CTX u32 i) {
-    return lane_reals(ctx->at.asked->weighed[0] + ctx->at.lane, i * KU(BLOCK) + lane_numbers(0));
+FN u32 entry_light(CTX u32 i) { return word_gather(ctx->at.lists->list.light, i); }
+FN void summed_store(CTX u1 i, real sum) { rstore(ctx->at.asked->summed[i] + ctx->at.lane, sum); }
+FN real summed_at(CTX u32 i) {
+    return real_gather(ctx->at.asked->summed[0] + ctx->at.lane, i * KU(BLOCK) + lane_numbers(0));
 }
 FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
     uint32_t k[LANES], e[LANES];
