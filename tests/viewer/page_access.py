@@ -83,6 +83,7 @@ class Access(Opened):
         shut = "document.getElementById('%s').hidden"
         for _ in range(2):
             page.click(320, 330)
+            page.wait(f"!({shut % 'right'})")  # a click waits for a second one
             page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
             assert page.evaluate("document.activeElement.id") == 'stage'
             page.key('Escape')
