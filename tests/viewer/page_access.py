@@ -89,6 +89,7 @@ class Access(Opened):
             page.key('Escape')
             page.wait(shut % 'right')
         page.viewport(1000, 420)  # which has room for both
+        page.wait('innerWidth === 1000')
         page.key('p')
         page.key('b')
         blur(page)

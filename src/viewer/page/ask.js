@@ -228,7 +228,7 @@ export class Ask {
         this.#answer = answer;
         const { street, object } = what === 'lamp' ? {} : answer;
         this.building.disabled = !street && !object;
-        this.building.textContent = `Whole ${street ?? (object ? this.#kind(answer) : 'object')}`;
+        this.building.textContent = `Whole ${street || (object ? this.#kind(answer) : 'object')}`;
         if (answer.outline && this.#region && !this.#region.outline) {
             this.#region.outline = answer.outline;
             this.map.region ??= answer.outline.map((ring) => ring.map((place) => place.slice(0, 2)));

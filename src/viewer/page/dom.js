@@ -121,8 +121,8 @@ export function breaks(text) {
     return parts.flatMap((part, i) => (i ? [el('wbr'), part] : [part]));
 }
 
-// Who has no mouse taps.
-export const byTouch = () => window.matchMedia('(hover: none)').matches;
+// Who points with a finger taps.
+export const byTouch = () => window.matchMedia('(pointer: coarse)').matches;
 export const click = () => (byTouch() ? 'Tap' : 'Click');
 
 // 1234567 as "1.23 M".
