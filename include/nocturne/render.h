@@ -138,6 +138,7 @@ typedef struct noc_render_params {
     bool accumulate; /* running mean over frames, else the last frame alone */
     double sky;      /* luminance of the sky at the zenith, cd/m2; 0 = off */
     bool emitters;   /* emitters seen directly are shown */
+    bool gloss;      /* surfaces mirror, too; off: they reflect diffusely alone, and light is sampled for that */
     /* Of the map around the scene (noc_scene_set_environment), where it has one; it is the background then. A change of
      * them builds nothing anew. */
     double environment_scale;    /* cd/m2 for 1 in the map; default 1 */
@@ -160,7 +161,7 @@ typedef struct noc_render_params {
                 set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) set(bias_rays, true)      \
                     set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) set(reject_normal, 0.9)    \
                         set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) set(emitters, true)        \
-                            set(environment_scale, 1) set(isa, NOC_ISA_AUTO)
+                            set(gloss, true) set(environment_scale, 1) set(isa, NOC_ISA_AUTO)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
 #else

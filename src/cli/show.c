@@ -83,6 +83,7 @@ int cli_parse_show(render_args *args) {
     if (still && of_many && args->frames < 2 && !(args->time > 0))
         return cli_usage(args->command, "--show %s needs two frames or more", noc_aov_name(shown(args)));
     args->render.aovs = 1u << shown(args);
+    args->render.gloss = args->render.gloss && shown(args) != NOC_AOV_ILLUMINANCE;
     noc_log *log = cli_log_create(&args->common);
     noc_status checked = noc_render_check(&args->render, log);
     noc_log_destroy(log);

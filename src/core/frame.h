@@ -30,6 +30,7 @@ typedef struct frame_camera frame_camera;
 
 #define FRAME_ENVIRONMENT 16u /* a map is the background */
 #define FRAME_MAP_LIGHTS 32u  /* a map lights, in the sky's place */
+#define FRAME_MATTE 64u       /* surfaces without gloss */
 
 #define MAX_NEIGHBOURS 16
 #define REFERENCE_CHUNK 32u /* lights that the reference method sums at once */

@@ -91,7 +91,8 @@ _Static_assert((int)BIAS_BIASED == NOC_BIAS_BIASED && (int)BIAS_MIS == NOC_BIAS_
 
 void noc_make_frame_constants(const noc_render_params *p, uint32_t frame, bool history, frame_constants *out) {
     uint32_t flags = (history ? FRAME_HISTORY : 0) | (p->emitters ? FRAME_EMITTERS : 0) |
-                     (p->final_ray ? FRAME_FINAL_RAY : 0) | (noc_uses_bias_rays(p) ? FRAME_BIAS_RAYS : 0);
+                     (p->final_ray ? FRAME_FINAL_RAY : 0) | (noc_uses_bias_rays(p) ? FRAME_BIAS_RAYS : 0) |
+                     (p->gloss ? 0 : FRAME_MATTE);
     *out = (frame_constants){ .width = (uint32_t)p->width,
                               .height = (uint32_t)p->height,
                               .blocks_x = ((uint32_t)p->width + BLOCK_SIDE - 1) / BLOCK_SIDE,

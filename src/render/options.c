@@ -50,6 +50,8 @@ static const noc_option render_options[] = {
     REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2",
          "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off", MEAN),
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly", MEAN),
+    BOOL(P, gloss, "gloss", "Picture", "surfaces mirror, too; off, as with --show illuminance: diffusely alone",
+         SAMPLES),
     REAL(P, environment_scale, "environment-scale", "Picture", 0, 1e9, "cd/m2",
          "luminance that 1 in the map stands for", MEAN),
     REAL(P, environment_lux, "environment-lux", "Picture", 0, 1e6, "lx",

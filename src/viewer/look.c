@@ -179,6 +179,7 @@ noc_render_params look_params(const look *l, int width, int height) {
     p.width = width;
     p.height = height;
     p.aovs = l->show ? 1u << (l->show - 1) : 0;
+    p.gloss = p.gloss && p.aovs != 1u << NOC_AOV_ILLUMINANCE;
     return p;
 }
 

@@ -176,7 +176,7 @@ FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
         if (ANY(there))
             s.albedo = sel3(there, texel_albedo(texel), s.albedo);
     }
-    s.f0 = material_field(ctx->materials, m, 3);
+    s.f0 = ctx->frame->flags & FRAME_MATTE ? K(0.0f) : material_field(ctx->materials, m, 3);
     s.alpha = material_field(ctx->materials, m, 7);
     return s;
 }

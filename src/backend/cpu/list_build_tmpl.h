@@ -41,7 +41,7 @@ FN list_point tile_point(CTX u1 block, u1 at) {
 }
 FN list_material list_material_load(CTX u1 material) {
     const material_record *m = &ctx->materials[material];
-    return (list_material){ three(m->albedo), m->f0, m->alpha };
+    return (list_material){ three(m->albedo), ctx->frame->flags & FRAME_MATTE ? 0 : m->f0, m->alpha };
 }
 _Static_assert(sizeof(patch_record) == sizeof(list_patch) && offsetof(patch_record, wo) == offsetof(list_patch, wo) &&
                    offsetof(patch_record, alpha2) == offsetof(list_patch, alpha2),
