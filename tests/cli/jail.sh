@@ -231,7 +231,7 @@ END
             skip "$1" "more addresses are taken from the start, as by sanitizers"
         fi
     }
-    limited "faces that take more memory than they may are an error" 0.4 in/large.obj
+    limited "faces that take more memory than they may are an error" 0.1 in/large.obj
     limited "it is ended where it takes more memory than it may" 0.1 in/large.geojson
     rm in/large.obj in/large.geojson
     for what in NOCTURNE_READER=/nonexistent NOCTURNE_READER=/bin/false; do
