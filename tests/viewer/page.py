@@ -266,7 +266,11 @@ class Page(Opened):
         page.wait("viewer.state.panes.every(({ values }) => values.exposure === 'auto')")
         differs(page, before, 6)
         page.evaluate("viewer.goTo('street')")
-        press_text(page, 'Evening, 19 h')
+        page.evaluate('''(() => {
+            const all = [...document.querySelectorAll('.presets button')];
+            for (const text of ['All LED', 'Evening, 19 h']) all.find((one) => one.textContent === text).click();
+        })()''')  # before the first one's answer has come
+        page.wait(f"viewer.state.world.values['{group}'] === '1,4000K'")
         page.evaluate(f"viewer.setWorld('{group}', '1,own')")
         page.evaluate("viewer.setWorld('hour', viewer.option('hour').value)")
         page.key('Escape')

@@ -234,6 +234,13 @@ export class Control {
         this.why.textContent = why ? `no effect: ${why}` : '';
     }
 
+    // Another control has set it: the program tells it back in a moment.
+    take(value) {
+        this.made.show(value);
+        this.value = value;
+        this.#changed = performance.now();
+    }
+
     // Is it of the scene, where several pictures are shown?
     share(shared) {
         this.shared.hidden = !shared;

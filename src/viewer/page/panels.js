@@ -254,14 +254,12 @@ export class Settings {
 
     apply(values) {
         for (const [name, given] of Object.entries(values)) {
-            const value = typeof given === 'object' ? toGroup({ ...this.#group(name), ...given }) : given;
+            const control = this.#controls.get(name);
+            const value = typeof given === 'object' ? toGroup({ ...groupWords(control?.value), ...given }) : given;
+            control?.take(value);
             if (this.app.schema.world.some((one) => one.name === name)) this.app.setWorld(name, value);
             else if (this.app.schema.look.some((one) => one.name === name)) this.app.set(name, value);
         }
-    }
-
-    #group(name) {
-        return groupWords(this.app.state?.world?.values?.[name] ?? this.app.option(name)?.value ?? '');
     }
 
     #show() {
