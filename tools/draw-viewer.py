@@ -107,6 +107,16 @@ def for_docs(machine, link, folder):
     layout(page, 'methods')
     shown(page, REST)
     page.screenshot(os.path.join(folder, 'methods.png'))
+    layout(page, 'divider')  # sodium at 21 h, and LED at 3 h, at half
+    shown(page, 2 * REST)
+    page.press('.hold')
+    panel(page, 'Settings')
+    for text in ('All LED', 'Deep night, 3 h, lamps at half'):
+        page.evaluate(f'''[...document.querySelectorAll('.presets button')]
+            .find((one) => one.textContent === '{text}').click()''')
+    page.wait("viewer.state.world.values['group.lamps'] === '0.5,4000K'")
+    page.browser.listen(2 * REST)
+    page.screenshot(os.path.join(folder, 'before-and-after.png'))
     page.close()
 
 
