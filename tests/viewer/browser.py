@@ -165,6 +165,12 @@ class Page:
     def go(self, url):
         self.call('Page.navigate', url=url)
 
+    def reload(self):
+        """Returns when the old document has gone."""
+        self.evaluate('(globalThis.old = true)')
+        self.call('Page.reload')
+        self.wait('!globalThis.old')
+
     def close(self):
         self.browser.call('Target.closeTarget', targetId=self.target)
 

@@ -143,7 +143,7 @@ class Page(Opened):
         page.press('#legend .fold')
         page.wait("document.querySelector('#legend .scale').offsetParent === null")
         kept = at()
-        page.evaluate('location.reload()')
+        page.reload()
         page.wait("globalThis.viewer?.state?.panes[0].values.show === 'depth'")
         page.wait("!document.getElementById('legend').hidden")
         page.wait("document.querySelector('#legend .scale').offsetParent === null")
@@ -384,7 +384,7 @@ class Page(Opened):
         other.wait("viewer.state.panes[1].values['show-range'] === '0,50'")
         self.machine.listen(2)  # the flight
         seen = camera(other)
-        other.evaluate('location.reload()')
+        other.reload()
         other.wait("globalThis.viewer?.state?.layout === 'divider'")
         other.wait("viewer.state.panes[1]?.values['show-range'] === '0,50'")
         values = state(other, 'panes[1].values')
