@@ -22,8 +22,7 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA || kind == REMOTE_TRACK ||
-                 kind == REMOTE_MESH;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA || kind == REMOTE_TRACK;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
