@@ -2,23 +2,15 @@
 #ifndef NOC_TEST_NO_LISTS_H
 #define NOC_TEST_NO_LISTS_H
 
+#include "no_scores.h"
+
 #include "core/list_rays.h"
 
-FN real score_load(CTX u1 group, int l) { return 0; }
-FN void score_store(CTX u1 group, int l, real score) {}
-FN f1 score_at(CTX u1 group, u1 place) { return 0; }
-FN void score_clear(CTX u1 group, u1 place) {}
-FN void chosen_store(CTX u1 i, u1 place) {}
-FN u1 chosen_load(CTX u1 i) { return 0; }
-FN const float *score_row(CTX u1 group) { return NULL; }
 FN u1 tile_pixels(CTX u1 block) { return 0; }
 FN list_point tile_point(CTX u1 block, u1 place) { return (list_point){ 0 }; }
 FN list_material list_material_load(CTX u1 material) { return (list_material){ 0 }; }
 FN void patch_store(CTX u1 i, list_patch t) {}
 FN list_patch patch_load(CTX u1 i) { return (list_patch){ 0 }; }
-FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) { return (list_node){ 0 }; }
-FN list_brief brief_load(CTX u1 part, u1 cluster, int l) { return (list_brief){ 0 }; }
-FN list_cluster cluster_load(CTX u1 part, u1 cluster) { return (list_cluster){ 0 }; }
 FN list_top top_load(CTX u1 part) { return (list_top){ 0 }; }
 FN u1 cluster_light(CTX u1 part, u1 cluster, u1 place) { return 0; }
 FN void list_group_store(CTX u1 group, list_group g) {}

@@ -2,7 +2,7 @@
  * alike. */
 #include "core_test.h"
 
-#include "core/list_scores.h"
+#include "no_scores.h"
 
 enum { BLOCKS = 16, PIXELS = 16 };
 
@@ -19,16 +19,6 @@ FN list_material list_material_load(CTX u1 material) {
 }
 FN void patch_store(CTX u1 i, list_patch t) { MINE->patch[i] = t; }
 FN list_patch patch_load(CTX u1 i) { return ctx->patch[i]; }
-FN real score_load(CTX u1 group, int l) { return 0; }
-FN void score_store(CTX u1 group, int l, real score) {}
-FN f1 score_at(CTX u1 group, u1 place) { return 0; }
-FN void score_clear(CTX u1 group, u1 place) {}
-FN void chosen_store(CTX u1 i, u1 place) {}
-FN u1 chosen_load(CTX u1 i) { return 0; }
-FN const float *score_row(CTX u1 group) { return NULL; }
-FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) { return (list_node){ 0 }; }
-FN list_brief brief_load(CTX u1 part, u1 cluster, int l) { return (list_brief){ 0 }; }
-FN list_cluster cluster_load(CTX u1 part, u1 cluster) { return (list_cluster){ 0 }; }
 
 static const f3 eye = { 0, 0, 0 };
 

@@ -1,4 +1,5 @@
 """What `nocturne view` answers: who lights a place, names, outlines, cards of lamps."""
+import contextlib
 import json
 import os
 import shlex
@@ -10,6 +11,21 @@ import tempfile
 import hand
 from hand import enter, near, said
 from wire import Picture, Program
+
+
+@contextlib.contextmanager
+def client_of(features):
+    """A client of a program that shows a map of these features of GeoJSON."""
+    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
+        json.dump({"type": "FeatureCollection", "features": features}, file)
+        file.flush()
+        q = Program(file.name, "--map-surfaces", "--threads", "2")
+        try:
+            c = enter(q)
+            yield c
+            c.close()
+        finally:
+            q.end()
 
 
 def ask(c, what, timeout=180, **values):
@@ -116,34 +132,26 @@ def test_search_folds_and_offers_the_nearest(p):
                 for i, name in enumerate(names)]
     features.append({"type": "Feature", "id": "node/777", "properties": {"highway": "street_lamp"},
                      "geometry": {"type": "Point", "coordinates": [11.4205, 48.76003]}})
-    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
-        json.dump({"type": "FeatureCollection", "features": features}, file)
-        file.flush()
-        q = Program(file.name, "--map-surfaces", "--threads", "2")
-        try:
-            c = enter(q)
+    with client_of(features) as c:
 
-            def found(text):
-                answer = ask(c, "find", id=1, text=text)
-                return [one["name"] for one in answer["found"] if one["kind"] == "street"]
+        def found(text):
+            answer = ask(c, "find", id=1, text=text)
+            return [one["name"] for one in answer["found"] if one["kind"] == "street"]
 
-            for text in ("karl marx str", "KARL-MARX-STR.", "Karl Marx Strasse", "karl\u2013marx\u2013straße"):
-                assert found(text) == [names[0]], (text, found(text))
-            for text in ("munchener straße", "Muenchener", "MÜNCHENER STR", "mu\u0308nchener strasse"):
-                assert found(text) == [names[1]], (text, found(text))
-            assert found("Göthestr.") == [names[2]] and found("goethe") == [names[2]]
-            assert found("mueller") == [names[3]] and found("str. x") == []
-            assert sorted(found("straße")) == sorted(names[:3])
-            missed = ask(c, "find", id=2, text="Goethestrase")
-            assert missed["found"] == [] and missed["near"][0]["name"] == names[2], missed
-            assert ask(c, "find", id=3, text="qqqqqqqqqqqq")["near"] == []
-            lamps = ask(c, "find", id=4, text="node/777")["found"]
-            assert [one["kind"] for one in lamps] == ["lamp"] and len(lamps[0]["place"]) == 3, lamps
-            for text in ("", " ", "-", ".", "\u00c3", "str.str.str." * 8):
-                assert "found" in ask(c, "find", id=5, text=text)
-            c.close()
-        finally:
-            q.end()
+        for text in ("karl marx str", "KARL-MARX-STR.", "Karl Marx Strasse", "karl\u2013marx\u2013straße"):
+            assert found(text) == [names[0]], (text, found(text))
+        for text in ("munchener straße", "Muenchener", "MÜNCHENER STR", "mu\u0308nchener strasse"):
+            assert found(text) == [names[1]], (text, found(text))
+        assert found("Göthestr.") == [names[2]] and found("goethe") == [names[2]]
+        assert found("mueller") == [names[3]] and found("str. x") == []
+        assert sorted(found("straße")) == sorted(names[:3])
+        missed = ask(c, "find", id=2, text="Goethestrase")
+        assert missed["found"] == [] and missed["near"][0]["name"] == names[2], missed
+        assert ask(c, "find", id=3, text="qqqqqqqqqqqq")["near"] == []
+        lamps = ask(c, "find", id=4, text="node/777")["found"]
+        assert [one["kind"] for one in lamps] == ["lamp"] and len(lamps[0]["place"]) == 3, lamps
+        for text in ("", " ", "-", ".", "\u00c3", "str.str.str." * 8):
+            assert "found" in ask(c, "find", id=5, text=text)
 
 
 def test_long_names_are_whole(p):
@@ -152,19 +160,11 @@ def test_long_names_are_whole(p):
     roads = [{"type": "Feature", "properties": {"highway": "residential", "name": name},
               "geometry": {"type": "LineString", "coordinates": [[11.42, y], [11.421, y]]}}
              for name, y in zip(names, (48.76, 48.761))]
-    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
-        json.dump({"type": "FeatureCollection", "features": roads}, file)
-        file.flush()
-        q = Program(file.name, "--map-surfaces", "--threads", "2")
-        try:
-            c = enter(q)
-            assert sorted(one["name"] for one in ask(c, "find", id=1, text="aaa")["found"]) == names
-            places = [ask(c, "name", id=2, street=name)["place"] for name in names]
-            assert abs(places[1][1] - places[0][1]) > 50, places
-            assert ask(c, "region", id=3, street=names[1])["area"] > 10
-            c.close()
-        finally:
-            q.end()
+    with client_of(roads) as c:
+        assert sorted(one["name"] for one in ask(c, "find", id=1, text="aaa")["found"]) == names
+        places = [ask(c, "name", id=2, street=name)["place"] for name in names]
+        assert abs(places[1][1] - places[0][1]) > 50, places
+        assert ask(c, "region", id=3, street=names[1])["area"] > 10
 
 
 def test_regions_have_outlines(p):
@@ -241,23 +241,15 @@ def test_commands_speak_the_scenes_crs(p):
                  "geometry": {"type": "LineString", "coordinates": [[11.42, 48.76], [11.421, 48.76]]}},
                 {"type": "Feature", "properties": {"highway": "street_lamp", "id": "node/7"},
                  "geometry": {"type": "Point", "coordinates": [11.4205, 48.76003]}}]
-    with tempfile.NamedTemporaryFile("w", suffix=".geojson") as file:
-        json.dump({"type": "FeatureCollection", "features": features}, file)
-        file.flush()
-        q = Program(file.name, "--map-surfaces", "--threads", "2")
-        try:
-            c = enter(q)
-            street = ask(c, "region", id=1, street="Markt-Straße")
-            assert "EPSG" in street["crs"]["name"] and street["crs"]["place"][1] > 5e6, street["crs"]
-            carried_away(street)
-            x, y = street["place"][:2]
-            square = ask(c, "region", id=2, polygon=[[x - 3, y - 3], [x + 3, y - 3], [x + 3, y + 3], [x - 3, y + 3]])
-            assert "POLYGON((" in square["command"] and near(square["crs"]["place"], street["crs"]["place"], 3), square
-            there = carried_away(square)
-            assert "EPSG" in there["crs"], there["crs"]
-            c.close()
-        finally:
-            q.end()
+    with client_of(features) as c:
+        street = ask(c, "region", id=1, street="Markt-Straße")
+        assert "EPSG" in street["crs"]["name"] and street["crs"]["place"][1] > 5e6, street["crs"]
+        carried_away(street)
+        x, y = street["place"][:2]
+        square = ask(c, "region", id=2, polygon=[[x - 3, y - 3], [x + 3, y - 3], [x + 3, y + 3], [x - 3, y + 3]])
+        assert "POLYGON((" in square["command"] and near(square["crs"]["place"], street["crs"]["place"], 3), square
+        there = carried_away(square)
+        assert "EPSG" in there["crs"], there["crs"]
 
 
 def test_a_card_tells_what_a_lamp_lights(p):
