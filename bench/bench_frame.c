@@ -44,6 +44,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
     p.candidates = v->candidates;
     p.sky = 0;
     noc_view *r = own_view(scene, 0, NULL);
+    noc_trace_floor traced;
     double wall[64], floor[64], pass[NOC_PASS_COUNT] = { 0 };
     noc_frame_stats stats;
     bool ok = r && noc_view_render(r, camera, &p, NULL) == NOC_OK;
@@ -53,7 +54,8 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
         wall[i] = stats.wall_seconds;
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             pass[k] += stats.pass_seconds[k] / frames;
-        ok = ok && noc_view_trace_floor(r, camera, &p, &floor[i]) == NOC_OK;
+        ok = ok && noc_view_trace_floor(r, camera, &p, &traced) == NOC_OK;
+        floor[i] = traced.wall_seconds;
     }
     if (ok) {
         double w = bench_median(wall, frames), f = bench_median(floor, frames), total = 0;

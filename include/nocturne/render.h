@@ -299,6 +299,9 @@ typedef struct noc_frame_stats {
     uint64_t dropped;                    /* samples dropped for being NaN or infinite, since the last reset */
     double build_seconds;                /* of the ray tracing structure */
     size_t memory_bytes;                 /* of the view and of what it shares, without the scene */
+    size_t picture_bytes;                /* of these: what each pixel takes, in the view's buffers and views (aovs) */
+    size_t structure_bytes;              /* of these: the ray tracing structure */
+    size_t learned_bytes;                /* of these: what the view has learned of the lights' visibility */
     const char *path;                    /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
@@ -336,11 +339,17 @@ NOC_API void noc_view_light_stats(const noc_view *view, noc_light_stats *stats);
  * during a frame. */
 NOC_API noc_status noc_view_write_influence(noc_view *view, const noc_render_params *params, const char *path);
 
+/* What the rays of a frame take by themselves. */
+typedef struct noc_trace_floor {
+    double wall_seconds;
+    double cpu_seconds; /* of the process */
+} noc_trace_floor;
+
 /* The trace floor: renders the next frame as noc_view_render does, keeps its rays (primary, visibility, bias, final,
- * and sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of
- * the second time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */
+ * and sky where it is on), then traces those rays again through the same structure and nothing else. What the second
+ * time takes goes into *floor. Takes about 600 bytes for 16 rays while it lasts. */
 NOC_API noc_status noc_view_trace_floor(noc_view *view, const noc_camera *camera, const noc_render_params *params,
-                                        double *seconds);
+                                        noc_trace_floor *floor);
 
 #ifdef __cplusplus
 }

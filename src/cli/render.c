@@ -286,7 +286,7 @@ static int draw(render_job *job) {
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */
-    if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor_seconds))
+    if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor))
         return CLI_FAILURE;
     if (ending && args->time > 0)
         cli_error("interrupted: saved %s to %s", noc_text_many(text, (uint64_t)job->frames, "frame"), args->output);

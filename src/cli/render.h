@@ -64,7 +64,7 @@ typedef struct render_job {
     double started, loaded, ready, rendered;                         /* wall clock */
     int frames;                                                      /* complete */
     double frame_seconds, cpu_seconds, pass_seconds[NOC_PASS_COUNT]; /* summed over complete frames */
-    double floor_seconds;                                            /* trace floor of one frame; 0: not measured */
+    noc_trace_floor floor;                                           /* of one frame; 0: not measured */
 } render_job;
 
 /* render.c */

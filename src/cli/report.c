@@ -455,8 +455,8 @@ void cli_print_stats(const render_job *job) {
            1e3 * job->cpu_seconds / job->frames);
     printf("  %-20s %s primary, %s shadow (last frame)\n", "rays", noc_text_count(a, job->last.rays_primary),
            noc_text_count(b, job->last.rays_shadow));
-    if (job->floor_seconds > 0)
+    if (job->floor.wall_seconds > 0)
         printf("  %-20s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor",
-               1e3 * job->floor_seconds, frame / job->floor_seconds);
+               1e3 * job->floor.wall_seconds, frame / job->floor.wall_seconds);
     printf("  %-20s %s\n", "memory", noc_text_bytes(a, job->last.memory_bytes));
 }

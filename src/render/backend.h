@@ -103,7 +103,7 @@ typedef struct noc_backend {
     void (*clear)(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
     void (*record)(void *view, bool on);
-    noc_status (*replay)(void *view, double *seconds);
+    noc_status (*replay)(void *view, noc_trace_floor *floor);
 } noc_backend;
 
 extern const noc_backend noc_backend_embree;

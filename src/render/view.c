@@ -281,8 +281,8 @@ noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params
 }
 
 noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc_render_params *params,
-                                double *seconds) {
-    if (!v || !camera || !seconds)
+                                noc_trace_floor *floor) {
+    if (!v || !camera || !floor)
         return noc_null(v ? v->log : NULL, __func__);
     const noc_render_params defaults = noc_render_default_params();
     params = params ? params : &defaults;
@@ -293,7 +293,7 @@ noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc
     v->backend->record(v->state, true);
     status = make_frame(v, camera, params, NULL);
     v->backend->record(v->state, false);
-    noc_status traced = v->backend->replay(v->state, seconds);
+    noc_status traced = v->backend->replay(v->state, floor);
     noc_scene_unlock_frame(v->scene);
     return status != NOC_OK ? status : traced;
 }

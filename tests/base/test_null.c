@@ -299,7 +299,7 @@ static noc_camera camera;
     P(noc_log_destroy(noc_log_create(NULL)), true)                                                                     \
     P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
     P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
-    P(0, noc_view_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_view_trace_floor(NULL, &camera, NULL, &(noc_trace_floor){ 0 }) == NOC_ERR_ARGUMENT)                       \
     P(0, noc_emitter_kind_name((noc_emitter_kind)99) != NULL)                                                          \
     P(noc_region_destroy(noc_region_create(NULL)), true)                                                               \
     P(noc_region_destroy(NULL), true)                                                                                  \

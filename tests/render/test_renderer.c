@@ -501,9 +501,12 @@ static void frames_and_resets(void **state) {
     noc_view_get_stats(r, &stats);
     assert_int_equal(stats.rays_primary, 32 * 32);
     assert_true(stats.rays_shadow > 0 && stats.memory_bytes > 0 && stats.wall_seconds > 0);
-    double seconds = 0;
-    assert_int_equal(noc_view_trace_floor(r, &c, &p, &seconds), NOC_OK);
-    assert_true(seconds > 0);
+    assert_true(stats.picture_bytes > 0 && stats.picture_bytes % (8 * 8) == 0 &&
+                stats.structure_bytes > 0); /* blocks */
+    assert_true(stats.picture_bytes + stats.structure_bytes + stats.learned_bytes <= stats.memory_bytes);
+    noc_trace_floor floor = { 0 };
+    assert_int_equal(noc_view_trace_floor(r, &c, &p, &floor), NOC_OK);
+    assert_true(floor.wall_seconds > 0 && floor.cpu_seconds > 0);
     assert_int_equal(frames_of(r), 2); /* it was a frame like any other */
     noc_image_destroy(first);
     noc_image_destroy(again);

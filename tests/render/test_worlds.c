@@ -230,12 +230,12 @@ static void *edit_late(void *arg) {
     return arg;
 }
 
-static noc_status replay_beside_a_commit(void *view, double *seconds) {
+static noc_status replay_beside_a_commit(void *view, noc_trace_floor *floor) {
     assert_int_equal(pthread_create(&late.thread, NULL, edit_late, NULL), 0);
     for (int i = 0; i < 100 && !late.committed; i++)
         usleep(1000);
     late.early = late.committed;
-    return noc_backend_embree.replay(view, seconds);
+    return noc_backend_embree.replay(view, floor);
 }
 
 /* The trace floor's rays are traced through the structure of their frame. */
@@ -248,13 +248,13 @@ static void rays_are_replayed_before_a_commit(void **state) {
     device->backend = &backend;
     noc_view *v = noc_view_create(device, s);
     looker l = { 0 };
-    double seconds = 0;
+    noc_trace_floor floor = { 0 };
     describe(&l, 0);
     late.editor = (editor){ .scene = s, .commits = 1 };
-    assert_int_equal(noc_view_trace_floor(v, &l.camera, &l.params, &seconds), NOC_OK);
+    assert_int_equal(noc_view_trace_floor(v, &l.camera, &l.params, &floor), NOC_OK);
     pthread_join(late.thread, NULL);
     assert_false(late.early);
-    assert_true(late.committed && !late.editor.failed && seconds > 0);
+    assert_true(late.committed && !late.editor.failed && floor.wall_seconds > 0);
     assert_int_equal(noc_view_render(v, &l.camera, &l.params, NULL), NOC_OK); /* the lock is free again */
     noc_view_destroy(v);
     noc_device_destroy(device);

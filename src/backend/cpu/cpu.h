@@ -256,7 +256,7 @@ void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_bl
 void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
                      float *wall, uint32_t *instance);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
-noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
+noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor);
 
 /* scratch.c: what the passes of a plan want, for each thread */
 noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan);

@@ -207,7 +207,7 @@ static void replay_run(void *ctx, size_t item, int index) {
     }
 }
 
-noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds) {
+noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor) {
     NOC_ARRAY(struct replay_item) items = { 0 };
     bool whole = true;
     for (int i = 0; i < s->worker_count; i++) {
@@ -219,9 +219,9 @@ noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds) {
     }
     if (whole) {
         struct replay r = { s, items.data };
-        double start = noc_wall_seconds();
+        double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
         noc_pool_run(s->pool, items.len, replay_run, &r);
-        *seconds = noc_wall_seconds() - start;
+        *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
     }
     array_free(&items);
     return whole ? NOC_OK

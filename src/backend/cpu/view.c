@@ -151,10 +151,12 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
     }
     out->build_seconds = s->world->build_seconds;
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
-    out->memory_bytes = s->b.bytes + noc_cpu_rays_bytes(s->world) + noc_cpu_light_bytes(s->world) +
-                        noc_cpu_past_bytes(s) + (s->b.instance ? blocks * sizeof(*s->b.instance) : 0) +
-                        blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked | s->b.aovs.held) +
-                        s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels);
+    out->picture_bytes = s->b.bytes + (s->b.instance ? blocks * sizeof(*s->b.instance) : 0) +
+                         blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked | s->b.aovs.held);
+    out->structure_bytes = noc_cpu_rays_bytes(s->world);
+    out->learned_bytes = s->learned ? s->learned->count * sizeof(*s->learned->cells) : 0;
+    out->memory_bytes = out->picture_bytes + out->structure_bytes + out->learned_bytes + noc_cpu_light_bytes(s->world) +
+                        noc_cpu_past_bytes(s) + s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels);
     out->path = s->kernels->name;
 }
 
@@ -175,9 +177,9 @@ void noc_cpu_record(void *state, bool on) {
         forget_packets(s);
 }
 
-noc_status noc_cpu_replay(void *state, double *seconds) {
+noc_status noc_cpu_replay(void *state, noc_trace_floor *floor) {
     cpu_view *s = state;
-    noc_status status = noc_cpu_replay_rays(s, seconds);
+    noc_status status = noc_cpu_replay_rays(s, floor);
     forget_packets(s);
     return status;
 }
