@@ -124,6 +124,9 @@ typedef struct noc_reader {
     /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote/remote.c reads it. NULL: never.
      */
     bool (*foreign)(const char *head, size_t size);
+    /* Loads the library that this reader calls, where that is not there from the start; why not, or NULL. Readers call
+     * it themselves: it is for who must have it before. NULL: nothing to load. */
+    const char *(*load)(void);
     const char *missing; /* not NULL: this build lacks the part; the text says which */
 } noc_reader;
 

@@ -14,9 +14,6 @@ static bool probe(const char *head, size_t size) {
 
 #if NOC_HAVE_GDAL
 
-#include <cpl_conv.h>
-#include <ogr_srs_api.h>
-
 #define LOWEST (-12000.0) /* m: there is no ground below, nor above */
 #define HIGHEST 9000.0
 #define ASK 4096 /* triangles, before progress is asked */
@@ -43,24 +40,24 @@ static noc_status unsuitable(const terrain *t, const char *why) {
 
 /* As AUTHORITY:CODE or WKT; NULL where there is none, or memory was refused, which *refused tells. free() it. */
 static char *crs_of(OGRSpatialReferenceH srs, bool *refused) {
-    const char *authority = srs ? OSRGetAuthorityName(srs, NULL) : NULL,
-               *code = srs ? OSRGetAuthorityCode(srs, NULL) : NULL;
+    const char *authority = srs ? gdal.OSRGetAuthorityName(srs, NULL) : NULL,
+               *code = srs ? gdal.OSRGetAuthorityCode(srs, NULL) : NULL;
     const char *const options[] = { "FORMAT=WKT2_2018", NULL };
     char *wkt = NULL, *text = NULL;
     *refused = false;
     if (authority && code)
         text = noc_format("%s:%s", authority, code);
-    else if (srs && OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt)
+    else if (srs && gdal.OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt)
         text = noc_strdup(wkt);
     else
-        return CPLFree(wkt), NULL;
-    CPLFree(wkt);
+        return gdal.VSIFree(wkt), NULL;
+    gdal.VSIFree(wkt);
     *refused = !text;
     return text;
 }
 
 static noc_status tell_crs(terrain *t) {
-    OGRSpatialReferenceH srs = GDALGetSpatialRef(t->source.dataset);
+    OGRSpatialReferenceH srs = gdal.GDALGetSpatialRef(t->source.dataset);
     bool refused, lat_first;
     char *crs = crs_of(srs, &refused);
     noc_status status = refused ? noc_no_memory(t->sink->log, t->name) : NOC_OK;
@@ -83,11 +80,11 @@ static void find_unit(terrain *t) {
         { "us-ft", 1200. / 3937 }, { "ftus", 1200. / 3937 }
     };
     int given;
-    const char *unit = GDALGetRasterUnitType(t->band);
-    double scale = GDALGetRasterScale(t->band, &given), base = GDALGetRasterOffset(t->band, &given);
+    const char *unit = gdal.GDALGetRasterUnitType(t->band);
+    double scale = gdal.GDALGetRasterScale(t->band, &given), base = gdal.GDALGetRasterOffset(t->band, &given);
     double metres = 1;
-    OGRSpatialReferenceH srs = GDALGetSpatialRef(t->source.dataset);
-    for (size_t i = 0; i < NOC_COUNT(units) && !(srs && OSRIsCompound(srs)); i++)
+    OGRSpatialReferenceH srs = gdal.GDALGetSpatialRef(t->source.dataset);
+    for (size_t i = 0; i < NOC_COUNT(units) && !(srs && gdal.OSRIsCompound(srs)); i++)
         if (noc_ieq(unit, units[i].name))
             metres = units[i].metres;
     t->scale = metres * (isfinite(scale) && scale != 0 ? scale : 1);
@@ -98,16 +95,17 @@ static void find_unit(terrain *t) {
 
 static noc_status look(terrain *t) {
     GDALDatasetH set = t->source.dataset;
-    int bands = GDALGetRasterCount(set), width = GDALGetRasterXSize(set), height = GDALGetRasterYSize(set);
+    int bands = gdal.GDALGetRasterCount(set), width = gdal.GDALGetRasterXSize(set),
+        height = gdal.GDALGetRasterYSize(set);
     if (bands != 1)
         return unsuitable(t, bands ? "of several bands: a picture, no terrain" : "without a band");
     if (width < 2 || height < 2)
         return unsuitable(t, "of fewer than 2 x 2 samples");
-    t->band = GDALGetRasterBand(set, 1);
-    GDALDataType type = GDALGetRasterDataType(t->band);
-    if (GDALDataTypeIsComplex(type) || GDALGetRasterColorTable(t->band))
+    t->band = gdal.GDALGetRasterBand(set, 1);
+    GDALDataType type = gdal.GDALGetRasterDataType(t->band);
+    if (gdal.GDALDataTypeIsComplex(type) || gdal.GDALGetRasterColorTable(t->band))
         return unsuitable(t, "of colours or complex numbers: no terrain");
-    bool placed = GDALGetGeoTransform(set, t->place) == CE_None;
+    bool placed = gdal.GDALGetGeoTransform(set, t->place) == CE_None;
     for (int i = 0; i < 6; i++)
         placed = placed && isfinite(t->place[i]);
     if (!placed || t->place[1] * t->place[5] == t->place[2] * t->place[4])
@@ -132,7 +130,7 @@ static bool stands_for_none(float z) { return z == -9999 || z == -32768 || z == 
 
 static void clean(terrain *t) {
     int given;
-    double none = GDALGetRasterNoDataValue(t->band, &given);
+    double none = gdal.GDALGetRasterNoDataValue(t->band, &given);
     size_t count = t->grid.width * t->grid.height, guessed = 0, wild = 0;
     for (size_t i = 0; i < count; i++) {
         float *z = &t->grid.z[i];
@@ -160,8 +158,8 @@ static noc_status read_heights(terrain *t) {
         return noc_no_memory(t->sink->log, t->name);
     for (size_t row = 0; row < g->height && !status; row++) {
         int y = (int)(row * t->step + t->step / 2), columns = (int)(g->width * t->step);
-        CPLErr error = GDALRasterIO(t->band, GF_Read, 0, y, columns, 1, g->z + row * g->width, (int)g->width, 1,
-                                    GDT_Float32, 0, 0);
+        CPLErr error = gdal.GDALRasterIO(t->band, GF_Read, 0, y, columns, 1, g->z + row * g->width, (int)g->width, 1,
+                                         GDT_Float32, 0, 0);
         if (error != CE_None)
             status = map_source_error(&t->source);
         else if (row % 64 == 0 && !t->sink->progress(t->sink->ctx, 0.5 * (double)row / (double)g->height))
@@ -259,4 +257,5 @@ const noc_reader noc_reader_terrain = { .name = "GeoTIFF",
                                         .probe = probe,
                                         .read = read_terrain,
                                         .foreign = foreign,
+                                        .load = gdal_load,
                                         .missing = MISSING };

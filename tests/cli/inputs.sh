@@ -184,6 +184,22 @@ else
     skip "info of each lamp" "no GDAL"
 fi
 
+# GDAL is loaded where a map is read, and only there: one that is none stands in its way.
+if [ "$("$program" --version | grep -ci 'gdal [0-9]')" != 0 ] && ! ldd "$program" | grep -q lib[at]san; then
+    library=$(sed -n 's/#define NOC_GDAL_LIBRARY "\(.*\)"/\1/p' "$NOC_BUILD/noc_config.h")
+    mkdir broken && echo "no library" >"broken/$library"
+    export LD_LIBRARY_PATH="$work/broken"
+    run info "$gml"
+    result $status "a CityGML is read without GDAL"
+    for how in "" --no-isolate; do
+        expect "a map without it${how:+, in the process itself}" 1 \
+            "^nocturne: lit.osm: OpenStreetMap XML needs GDAL, which cannot be loaded: .*$library" info $how lit.osm
+    done
+    unset LD_LIBRARY_PATH
+else
+    skip "a missing GDAL" "no GDAL, or a sanitizer"
+fi
+
 # Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
 printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv

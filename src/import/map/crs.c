@@ -4,9 +4,6 @@
 
 #if NOC_HAVE_GDAL
 
-#include <cpl_conv.h>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <ctype.h>
 
 enum { LONGEST = 1 << 16 }; /* bytes of a CRS's text */
@@ -197,8 +194,8 @@ static void join_lines(char *text, size_t n) {
 /* Checked as GDAL reads it today, and as a reader would that keeps the lines apart. */
 static noc_status check_prj(const char *path, const char *name, noc_log *log) {
     char *text = noc_alloc(LONGEST), *apart = noc_alloc(LONGEST);
-    VSILFILE *f = text && apart ? VSIFOpenL(path, "rb") : NULL;
-    size_t n = f ? VSIFReadL(text, 1, LONGEST, f) : 0;
+    VSILFILE *f = text && apart ? gdal.VSIFOpenL(path, "rb") : NULL;
+    size_t n = f ? gdal.VSIFReadL(text, 1, LONGEST, f) : 0;
     noc_status status = text && apart ? NOC_OK : noc_no_memory(log, name);
     if (n == LONGEST)
         status = noc_error(log, NOC_ERR_FORMAT, "%s: its .prj has more than %d bytes", name, LONGEST);
@@ -211,7 +208,7 @@ static noc_status check_prj(const char *path, const char *name, noc_log *log) {
         status = status ? status : map_check_crs_text(apart, name, log);
     }
     if (f)
-        VSIFCloseL(f);
+        gdal.VSIFCloseL(f);
     free(text);
     free(apart);
     return status;
@@ -224,7 +221,7 @@ static noc_status check_shapefile(const char *path, const char *name, noc_log *l
     char *folder = noc_strndup(path, slash ? (size_t)(slash - path) : 0);
     if (!folder)
         return noc_no_memory(log, name);
-    char **entries = VSIReadDir(*folder ? folder : slash ? "/" : ".");
+    char **entries = gdal.VSIReadDir(*folder ? folder : slash ? "/" : ".");
     noc_status status = NOC_OK;
     for (size_t i = 0; entries && entries[i] && !status; i++) {
         if (strncasecmp(entries[i], base, stem) || !noc_ieq(entries[i] + NOC_MIN(stem, strlen(entries[i])), ".prj"))
@@ -233,7 +230,7 @@ static noc_status check_shapefile(const char *path, const char *name, noc_log *l
         status = part ? check_prj(part, name, log) : noc_no_memory(log, name);
         free(part);
     }
-    CSLDestroy(entries);
+    gdal.CSLDestroy(entries);
     free(folder);
     return status;
 }
@@ -251,25 +248,25 @@ noc_status map_check_crs(noc_stream *stream, const char *path, const map_format 
 /* The texts that a query of one column gives. As they are cast to text, none is taken for a geometry, which would have
  * a CRS. */
 static noc_status check_query(map_source *m, const char *query) {
-    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    OGRLayerH rows = gdal.GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
     noc_status status = rows ? NOC_OK : map_source_error(m);
     OGRFeatureH row;
-    while (!status && (row = OGR_L_GetNextFeature(rows))) {
-        status = map_check_crs_text(OGR_F_GetFieldAsString(row, 0), m->name, m->log);
-        OGR_F_Destroy(row);
+    while (!status && (row = gdal.OGR_L_GetNextFeature(rows))) {
+        status = map_check_crs_text(gdal.OGR_F_GetFieldAsString(row, 0), m->name, m->log);
+        gdal.OGR_F_Destroy(row);
     }
     if (rows)
-        GDALDatasetReleaseResultSet(m->dataset, rows);
+        gdal.GDALDatasetReleaseResultSet(m->dataset, rows);
     return !status && m->error[0] ? map_source_error(m) : status;
 }
 
 static bool has_rows(map_source *m, const char *query) {
-    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
-    OGRFeatureH row = rows ? OGR_L_GetNextFeature(rows) : NULL;
+    OGRLayerH rows = gdal.GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    OGRFeatureH row = rows ? gdal.OGR_L_GetNextFeature(rows) : NULL;
     bool any = row != NULL;
-    OGR_F_Destroy(row);
+    gdal.OGR_F_Destroy(row);
     if (rows)
-        GDALDatasetReleaseResultSet(m->dataset, rows);
+        gdal.GDALDatasetReleaseResultSet(m->dataset, rows);
     return any;
 }
 

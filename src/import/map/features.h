@@ -8,8 +8,6 @@
 
 #if NOC_HAVE_GDAL
 
-#include <ogr_api.h>
-
 typedef struct tag_buffer {
     NOC_ARRAY(lamp_tag) tags;
     NOC_ARRAY(char *) owned;

@@ -12,10 +12,10 @@
 /* ---- buildings ---- */
 
 static bool add_ring(map_reading *m, OGRGeometryH ring) {
-    int count = OGR_G_GetPointCount(ring);
+    int count = gdal.OGR_G_GetPointCount(ring);
     size_t first = m->xyz.len;
     for (int i = 0; i < count; i++) {
-        const double xyz[3] = { OGR_G_GetX(ring, i), OGR_G_GetY(ring, i), 0 };
+        const double xyz[3] = { gdal.OGR_G_GetX(ring, i), gdal.OGR_G_GetY(ring, i), 0 };
         if (!array_append(&m->xyz, xyz, (size_t)3))
             return false;
     }
@@ -30,10 +30,10 @@ static bool add_ring(map_reading *m, OGRGeometryH ring) {
 
 /* Into m->rings and m->xyz: no rings where it is none. */
 static noc_status take_polygon(map_reading *m, OGRGeometryH polygon) {
-    int rings = OGR_G_GetGeometryCount(polygon);
+    int rings = gdal.OGR_G_GetGeometryCount(polygon);
     m->rings.len = m->xyz.len = 0;
     for (int i = 0; i < rings; i++) {
-        if (!add_ring(m, OGR_G_GetGeometryRef(polygon, i)))
+        if (!add_ring(m, gdal.OGR_G_GetGeometryRef(polygon, i)))
             return map_no_memory(m);
         if (!m->rings.len) {
             geo_issue(m->writer.sink->issues, GEO_SKIPPED, "ring with too few points", m->tags.id);
@@ -63,8 +63,8 @@ static noc_status emit_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType t
     noc_status status = NOC_OK;
     if (type == wkbPolygon)
         return emit_polygon(m, g, footprint, cls);
-    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
-        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), footprint, cls);
+    for (int i = 0; i < gdal.OGR_G_GetGeometryCount(g) && !status; i++)
+        status = emit_polygon(m, gdal.OGR_G_GetGeometryRef(g, i), footprint, cls);
     return status;
 }
 
@@ -97,12 +97,12 @@ static noc_status read_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType t
 /* ---- roads ---- */
 
 static noc_status emit_line(map_reading *m, OGRGeometryH line, geo_road *road) {
-    int count = OGR_G_GetPointCount(line);
+    int count = gdal.OGR_G_GetPointCount(line);
     if (count < 2)
         return NOC_OK;
     m->xyz.len = 0;
     for (int i = 0; i < count; i++) {
-        const double xyz[3] = { OGR_G_GetX(line, i), OGR_G_GetY(line, i), NAN };
+        const double xyz[3] = { gdal.OGR_G_GetX(line, i), gdal.OGR_G_GetY(line, i), NAN };
         if (!array_append(&m->xyz, xyz, (size_t)3))
             return map_no_memory(m);
     }
@@ -125,8 +125,8 @@ static noc_status read_road(map_reading *m, OGRGeometryH g, OGRwkbGeometryType t
     noc_status status = NOC_OK;
     if (type == wkbLineString)
         return emit_line(m, g, &road);
-    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
-        status = emit_line(m, OGR_G_GetGeometryRef(g, i), &road);
+    for (int i = 0; i < gdal.OGR_G_GetGeometryCount(g) && !status; i++)
+        status = emit_line(m, gdal.OGR_G_GetGeometryRef(g, i), &road);
     return status;
 }
 
@@ -145,14 +145,14 @@ static void name_shape(map_reading *m) {
 }
 
 noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is) {
-    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
-    OGRwkbGeometryType type = g ? wkbFlatten(OGR_G_GetGeometryType(g)) : wkbUnknown;
+    OGRGeometryH g = gdal.OGR_F_GetGeometryRef(feature);
+    OGRwkbGeometryType type = g ? gdal.OGR_GT_Flatten(gdal.OGR_G_GetGeometryType(g)) : wkbUnknown;
     bool area = type == wkbPolygon || type == wkbMultiPolygon,
          line = type == wkbLineString || type == wkbMultiLineString;
     *is = false;
     const geo_sink *sink = m->writer.sink;
     bool wanted = (area && (sink->footprint || sink->area)) || (line && sink->road);
-    if (!wanted || OGR_G_IsEmpty(g))
+    if (!wanted || gdal.OGR_G_IsEmpty(g))
         return NOC_OK;
     if (!map_collect_fields(feature, defn, false, &m->tags))
         return map_no_memory(m);
@@ -171,9 +171,9 @@ noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH d
 void map_choose_layers(map_reading *m, const char *layers) {
     char command[80];
     snprintf(command, sizeof(command), "SET interest_layers = %s", layers);
-    OGRLayerH none = GDALDatasetExecuteSQL(m->source.dataset, command, NULL, NULL);
+    OGRLayerH none = gdal.GDALDatasetExecuteSQL(m->source.dataset, command, NULL, NULL);
     if (none)
-        GDALDatasetReleaseResultSet(m->source.dataset, none);
+        gdal.GDALDatasetReleaseResultSet(m->source.dataset, none);
 }
 
 /* GDAL reads the file once, and only for the layers that are asked for before: so this is the file anew. */
@@ -188,10 +188,10 @@ noc_status map_read_osm_shapes(map_reading *m) {
     OGRFeatureH feature;
     OGRLayerH layer;
     size_t n = 0;
-    while (!status && (feature = GDALDatasetGetNextFeature(m->source.dataset, &layer, NULL, NULL, NULL))) {
+    while (!status && (feature = gdal.GDALDatasetGetNextFeature(m->source.dataset, &layer, NULL, NULL, NULL))) {
         bool is;
-        status = map_read_shape(m, feature, OGR_L_GetLayerDefn(layer), &is);
-        OGR_F_Destroy(feature);
+        status = map_read_shape(m, feature, gdal.OGR_L_GetLayerDefn(layer), &is);
+        gdal.OGR_F_Destroy(feature);
         if (++n % 1024 == 0 && !status && sink->progress && !sink->progress(sink->ctx, 0.5))
             status = NOC_ERR_CANCELLED;
     }

@@ -4,11 +4,6 @@
 
 #if NOC_HAVE_GDAL
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_http.h>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <ctype.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -36,7 +31,7 @@ static void shorten_numbers(char *text) {
 static bool is_of_one_geometry(const char *text) { return !strncmp(text, "Invalid ", 8) && !strstr(text, "Feature"); }
 
 static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char *text) {
-    map_source *m = CPLGetErrorHandlerUserData();
+    map_source *m = gdal.CPLGetErrorHandlerUserData();
     if (level < CE_Failure || (level == CE_Failure && is_of_one_geometry(text)))
         return;
     if (!m->error[0])
@@ -54,9 +49,9 @@ static CPLHTTPResult *refuse_fetch(const char *url, CSLConstList options, GDALPr
     map_source *m = user;
     if (!m->link[0])
         snprintf(m->link, sizeof(m->link), "%s", url);
-    CPLHTTPResult *none = CPLCalloc(1, sizeof(*none)); /* NULL would leave it to curl after all */
+    CPLHTTPResult *none = gdal.CPLCalloc(1, sizeof(*none)); /* NULL would leave it to curl after all */
     none->nStatus = 1;
-    none->pszErrBuf = CPLStrdup("nothing is fetched");
+    none->pszErrBuf = gdal.CPLStrdup("nothing is fetched");
     return none;
 }
 
@@ -74,10 +69,10 @@ static const char osm_config[] =
 static pthread_once_t gdal_once = PTHREAD_ONCE_INIT;
 
 static void gdal_start(void) {
-    OGRRegisterAll();
-    VSILFILE *f = VSIFileFromMemBuffer(OSM_CONFIG_PATH, (GByte *)osm_config, sizeof(osm_config) - 1, FALSE);
+    gdal.OGRRegisterAll();
+    VSILFILE *f = gdal.VSIFileFromMemBuffer(OSM_CONFIG_PATH, (GByte *)osm_config, sizeof(osm_config) - 1, FALSE);
     if (f)
-        VSIFCloseL(f);
+        gdal.VSIFCloseL(f);
 }
 
 static const struct {
@@ -97,20 +92,21 @@ static const struct {
 
 static void gdal_enter(map_source *m) {
     pthread_once(&gdal_once, gdal_start);
+    m->entered = true;
     for (size_t i = 0; i < NOC_COUNT(gdal_settings); i++)
-        CPLSetThreadLocalConfigOption(gdal_settings[i].key, gdal_settings[i].value);
-    CPLSetThreadLocalConfigOption("CPL_TMPDIR", scratch_place());
-    CPLPushErrorHandlerEx(on_gdal_error, m);
-    CPLHTTPPushFetchCallback(refuse_fetch, m);
+        gdal.CPLSetThreadLocalConfigOption(gdal_settings[i].key, gdal_settings[i].value);
+    gdal.CPLSetThreadLocalConfigOption("CPL_TMPDIR", scratch_place());
+    gdal.CPLPushErrorHandlerEx(on_gdal_error, m);
+    gdal.CPLHTTPPushFetchCallback(refuse_fetch, m);
 }
 
 static void gdal_leave(void) {
-    CPLHTTPPopFetchCallback();
-    CPLPopErrorHandler();
-    CPLErrorReset();
+    gdal.CPLHTTPPopFetchCallback();
+    gdal.CPLPopErrorHandler();
+    gdal.CPLErrorReset();
     for (size_t i = 0; i < NOC_COUNT(gdal_settings); i++)
-        CPLSetThreadLocalConfigOption(gdal_settings[i].key, NULL);
-    CPLSetThreadLocalConfigOption("CPL_TMPDIR", NULL);
+        gdal.CPLSetThreadLocalConfigOption(gdal_settings[i].key, NULL);
+    gdal.CPLSetThreadLocalConfigOption("CPL_TMPDIR", NULL);
 }
 
 /* ---- where GDAL finds the bytes of a stream ---- */
@@ -240,18 +236,18 @@ static noc_status check_schema_row(const map_source *m, const char *sql) {
 
 static noc_status check_virtual_tables(map_source *m) {
     OGRLayerH rows =
-        GDALDatasetExecuteSQL(m->dataset,
-                              "SELECT CASE typeof(sql) WHEN 'text' THEN sql ELSE 'CREATE' END FROM sqlite_master "
-                              "WHERE sql IS NOT NULL",
-                              NULL, NULL);
+        gdal.GDALDatasetExecuteSQL(m->dataset,
+                                   "SELECT CASE typeof(sql) WHEN 'text' THEN sql ELSE 'CREATE' END FROM sqlite_master "
+                                   "WHERE sql IS NOT NULL",
+                                   NULL, NULL);
     noc_status status = rows ? NOC_OK : map_source_error(m);
     OGRFeatureH row;
-    while (!status && (row = OGR_L_GetNextFeature(rows))) {
-        status = check_schema_row(m, OGR_F_GetFieldAsString(row, 0));
-        OGR_F_Destroy(row);
+    while (!status && (row = gdal.OGR_L_GetNextFeature(rows))) {
+        status = check_schema_row(m, gdal.OGR_F_GetFieldAsString(row, 0));
+        gdal.OGR_F_Destroy(row);
     }
     if (rows)
-        GDALDatasetReleaseResultSet(m->dataset, rows);
+        gdal.GDALDatasetReleaseResultSet(m->dataset, rows);
     return !status && m->error[0] ? map_source_error(m) : status;
 }
 
@@ -267,6 +263,10 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     *m = (map_source){ .name = noc_stream_name(stream), .format = format->name, .log = log };
     bool plain, copied = false;
     char *path = NULL;
+    const char *why_not = gdal_load();
+    if (why_not)
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: %s needs GDAL, which cannot be loaded: %s", m->name, m->format,
+                         why_not);
     gdal_enter(m);
     noc_status status = gdal_path(stream, log, &path, &plain);
     if (!status && plain && format->kind == MAP_SHAPEFILE)
@@ -288,12 +288,12 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
                                                                                  : none;
         bool grid = format->kind == MAP_GEOTIFF;
         if (grid) { /* nothing beside it: no overviews, masks, world files */
-            CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR");
-            CPLSetThreadLocalConfigOption("GDAL_GEOREF_SOURCES", "INTERNAL");
+            gdal.CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR");
+            gdal.CPLSetThreadLocalConfigOption("GDAL_GEOREF_SOURCES", "INTERNAL");
         }
         m->dataset =
-            GDALOpenEx(path, (grid ? GDAL_OF_RASTER : GDAL_OF_VECTOR) | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                       format->drivers, options, NULL);
+            gdal.GDALOpenEx(path, (grid ? GDAL_OF_RASTER : GDAL_OF_VECTOR) | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                            format->drivers, options, NULL);
         if (m->dataset && m->link[0])
             m->error[0] = 0; /* that it was not fetched is said below */
         status = m->dataset && !m->error[0] ? NOC_OK : map_source_error(m);
@@ -313,8 +313,9 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
 
 void map_source_close(map_source *m) {
     if (m->dataset)
-        GDALClose(m->dataset);
-    gdal_leave();
+        gdal.GDALClose(m->dataset);
+    if (m->entered)
+        gdal_leave();
     scratch_remove(&m->copy);
 }
 

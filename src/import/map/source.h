@@ -3,8 +3,8 @@
 #define NOC_IMPORT_MAP_SOURCE_H
 
 #include "import/import.h"
+#include "import/map/gdal.h"
 #include "import/scratch.h"
-#include "noc_config.h"
 
 typedef struct map_format {
     const char *name;
@@ -15,12 +15,11 @@ typedef struct map_format {
 
 #if NOC_HAVE_GDAL
 
-#include <gdal.h>
-
 typedef struct map_source {
     GDALDatasetH dataset;
     char error[512]; /* GDAL's first failure since it was opened, "" if none */
     char link[200];  /* the first address that a content asked for, "" if none: it is not fetched */
+    bool entered;    /* GDAL is there, and this thread's settings of it are ours */
     bool crs_named;  /* false: a GeoJSON without one, whose CRS is its format's */
     const char *name, *format;
     noc_log *log;

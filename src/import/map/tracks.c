@@ -56,28 +56,28 @@ static bool take_times(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn
     bool kept = true;
     m->times.len = 0;
     for (size_t k = 0; k < NOC_COUNT(lists) && !m->times.len && kept; k++) {
-        int i = OGR_FD_GetFieldIndex(defn, lists[k]), count = 0;
-        if (i < 0 || !OGR_F_IsFieldSetAndNotNull(feature, i))
+        int i = gdal.OGR_FD_GetFieldIndex(defn, lists[k]), count = 0;
+        if (i < 0 || !gdal.OGR_F_IsFieldSetAndNotNull(feature, i))
             continue;
-        OGRFieldType type = OGR_Fld_GetType(OGR_FD_GetFieldDefn(defn, i));
+        OGRFieldType type = gdal.OGR_Fld_GetType(gdal.OGR_FD_GetFieldDefn(defn, i));
         if (type == OFTStringList) {
-            char **texts = OGR_F_GetFieldAsStringList(feature, i);
+            char **texts = gdal.OGR_F_GetFieldAsStringList(feature, i);
             for (; texts && *texts && kept; texts++)
                 kept = array_push(&m->times, track_time(*texts));
         } else if (type == OFTIntegerList) {
-            const int *numbers = OGR_F_GetFieldAsIntegerList(feature, i, &count);
+            const int *numbers = gdal.OGR_F_GetFieldAsIntegerList(feature, i, &count);
             for (int n = 0; n < count && kept; n++)
                 kept = array_push(&m->times, (double)numbers[n]);
         } else if (type == OFTInteger64List) {
-            const GIntBig *numbers = OGR_F_GetFieldAsInteger64List(feature, i, &count);
+            const GIntBig *numbers = gdal.OGR_F_GetFieldAsInteger64List(feature, i, &count);
             for (int n = 0; n < count && kept; n++)
                 kept = array_push(&m->times, (double)numbers[n]);
         } else if (type == OFTRealList) {
-            const double *numbers = OGR_F_GetFieldAsDoubleList(feature, i, &count);
+            const double *numbers = gdal.OGR_F_GetFieldAsDoubleList(feature, i, &count);
             for (int n = 0; n < count && kept; n++)
                 kept = array_push(&m->times, numbers[n]);
         } else if (type == OFTString) {
-            kept = take_json(m, OGR_F_GetFieldAsString(feature, i));
+            kept = take_json(m, gdal.OGR_F_GetFieldAsString(feature, i));
         }
     }
     return kept;
@@ -85,15 +85,15 @@ static bool take_times(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn
 
 /* Of a field of one time. GDAL makes a type of its own of what looks like one. */
 static double time_of(OGRFeatureH feature, OGRFeatureDefnH defn, int i) {
-    OGRFieldType type = OGR_Fld_GetType(OGR_FD_GetFieldDefn(defn, i));
+    OGRFieldType type = gdal.OGR_Fld_GetType(gdal.OGR_FD_GetFieldDefn(defn, i));
     int year, month, day, hour, minute, zone;
     float second;
     char text[64];
-    if (!OGR_F_IsFieldSetAndNotNull(feature, i))
+    if (!gdal.OGR_F_IsFieldSetAndNotNull(feature, i))
         return NAN;
     if (type != OFTDateTime && type != OFTDate)
-        return track_time(OGR_F_GetFieldAsString(feature, i));
-    if (!OGR_F_GetFieldAsDateTimeEx(feature, i, &year, &month, &day, &hour, &minute, &second, &zone))
+        return track_time(gdal.OGR_F_GetFieldAsString(feature, i));
+    if (!gdal.OGR_F_GetFieldAsDateTimeEx(feature, i, &year, &month, &day, &hour, &minute, &second, &zone))
         return NAN;
     snprintf(text, sizeof(text), "%04d-%02d-%02dT%02d:%02d:%06.3f", year, month, day, hour, minute, (double)second);
     /* quarters of an hour, and 100 is UTC; below 2 it is not known */
@@ -103,15 +103,15 @@ static double time_of(OGRFeatureH feature, OGRFeatureDefnH defn, int i) {
 /* ---- lines ---- */
 
 static size_t count_points(OGRGeometryH g, bool one) {
-    size_t points = one ? (size_t)OGR_G_GetPointCount(g) : 0;
-    for (int i = 0; !one && i < OGR_G_GetGeometryCount(g); i++)
-        points += (size_t)OGR_G_GetPointCount(OGR_G_GetGeometryRef(g, i));
+    size_t points = one ? (size_t)gdal.OGR_G_GetPointCount(g) : 0;
+    for (int i = 0; !one && i < gdal.OGR_G_GetGeometryCount(g); i++)
+        points += (size_t)gdal.OGR_G_GetPointCount(gdal.OGR_G_GetGeometryRef(g, i));
     return points;
 }
 
 noc_status map_read_timed_line(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is) {
-    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
-    bool one = wkbFlatten(OGR_G_GetGeometryType(g)) == wkbLineString;
+    OGRGeometryH g = gdal.OGR_F_GetGeometryRef(feature);
+    bool one = gdal.OGR_GT_Flatten(gdal.OGR_G_GetGeometryType(g)) == wkbLineString;
     *is = false;
     if (!take_times(m, feature, defn))
         return map_no_memory(m);
@@ -127,10 +127,10 @@ noc_status map_read_timed_line(map_reading *m, OGRFeatureH feature, OGRFeatureDe
     w.geographic = m->writer.geographic;
     track_begin(&w, m->tags.id);
     size_t at = 0;
-    for (int i = 0; i < (one ? 1 : OGR_G_GetGeometryCount(g)); i++) {
-        OGRGeometryH line = one ? g : OGR_G_GetGeometryRef(g, i);
-        for (int k = 0; k < OGR_G_GetPointCount(line); k++)
-            track_point(&w, OGR_G_GetX(line, k), OGR_G_GetY(line, k), m->times.data[at++]);
+    for (int i = 0; i < (one ? 1 : gdal.OGR_G_GetGeometryCount(g)); i++) {
+        OGRGeometryH line = one ? g : gdal.OGR_G_GetGeometryRef(g, i);
+        for (int k = 0; k < gdal.OGR_G_GetPointCount(line); k++)
+            track_point(&w, gdal.OGR_G_GetX(line, k), gdal.OGR_G_GetY(line, k), m->times.data[at++]);
         track_end_part(&w);
     }
     track_end(&w);
@@ -141,10 +141,10 @@ noc_status map_read_timed_line(map_reading *m, OGRFeatureH feature, OGRFeatureDe
 /* ---- points ---- */
 
 static bool find_columns(map_reading *m, OGRFeatureDefnH defn) {
-    int count = OGR_FD_GetFieldCount(defn);
+    int count = gdal.OGR_FD_GetFieldCount(defn);
     const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
     for (int i = 0; i < count && names; i++)
-        names[i] = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
+        names[i] = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
     if (names)
         m->track_columns = track_columns_of(names, (size_t)count);
     free(names);
@@ -160,7 +160,7 @@ noc_status map_read_track_point(map_reading *m, OGRFeatureH feature, OGRFeatureD
     *is = of->time >= 0;
     if (!*is)
         return NOC_OK;
-    const char *track = of->track >= 0 ? OGR_F_GetFieldAsString(feature, of->track) : "";
+    const char *track = of->track >= 0 ? gdal.OGR_F_GetFieldAsString(feature, of->track) : "";
     if (!track_rows_add(&m->rows, track, xyz[0], xyz[1], time_of(feature, defn, of->time)))
         return map_no_memory(m);
     return m->rows.rows.len % 65536 ? NOC_OK

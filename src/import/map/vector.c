@@ -72,10 +72,6 @@ static noc_status read_head(noc_stream *stream, char *head, size_t size, size_t 
 
 #if NOC_HAVE_GDAL
 
-#include <cpl_conv.h>
-#include <ogr_api.h>
-#include <ogr_srs_api.h>
-
 /* ---- features ---- */
 
 noc_status map_no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
@@ -132,12 +128,12 @@ static void add_hstore(tag_buffer *b, const char *text) {
 /* False: memory was refused. */
 bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
     tag_buffer_clear(b);
-    int count = OGR_FD_GetFieldCount(defn);
+    int count = gdal.OGR_FD_GetFieldCount(defn);
     for (int i = 0; i < count; i++) {
-        if (!OGR_F_IsFieldSetAndNotNull(feature, i))
+        if (!gdal.OGR_F_IsFieldSetAndNotNull(feature, i))
             continue;
-        const char *key = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
-        const char *text = OGR_F_GetFieldAsString(feature, i);
+        const char *key = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
+        const char *text = gdal.OGR_F_GetFieldAsString(feature, i);
         if (!strcmp(key, "all_tags") || !strcmp(key, "other_tags")) {
             add_hstore(b, text);
             continue;
@@ -146,30 +142,30 @@ bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag
         if (value)
             add_tag(b, key, value);
     }
-    snprintf(b->id, sizeof(b->id), "feature %lld", (long long)OGR_F_GetFID(feature));
+    snprintf(b->id, sizeof(b->id), "feature %lld", (long long)gdal.OGR_F_GetFID(feature));
     return !b->refused;
 }
 
 /* The place of a feature: of its point, or, for a lamp drawn as something else, the middle of its box. */
 static bool place_of(OGRFeatureH feature, double xyz[3], bool *is_point) {
-    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
+    OGRGeometryH g = gdal.OGR_F_GetGeometryRef(feature);
     *is_point = false;
-    if (!g || OGR_G_IsEmpty(g))
+    if (!g || gdal.OGR_G_IsEmpty(g))
         return false;
-    OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(g));
+    OGRwkbGeometryType type = gdal.OGR_GT_Flatten(gdal.OGR_G_GetGeometryType(g));
     if (type == wkbMultiPoint || type == wkbGeometryCollection) {
-        g = OGR_G_GetGeometryCount(g) == 1 ? OGR_G_GetGeometryRef(g, 0) : g;
-        type = wkbFlatten(OGR_G_GetGeometryType(g));
+        g = gdal.OGR_G_GetGeometryCount(g) == 1 ? gdal.OGR_G_GetGeometryRef(g, 0) : g;
+        type = gdal.OGR_GT_Flatten(gdal.OGR_G_GetGeometryType(g));
     }
     if (type == wkbPoint) {
         *is_point = true;
-        xyz[0] = OGR_G_GetX(g, 0);
-        xyz[1] = OGR_G_GetY(g, 0);
-        xyz[2] = OGR_G_Is3D(g) ? OGR_G_GetZ(g, 0) : NAN;
+        xyz[0] = gdal.OGR_G_GetX(g, 0);
+        xyz[1] = gdal.OGR_G_GetY(g, 0);
+        xyz[2] = gdal.OGR_G_Is3D(g) ? gdal.OGR_G_GetZ(g, 0) : NAN;
         return true;
     }
     OGREnvelope box;
-    OGR_G_GetEnvelope(g, &box);
+    gdal.OGR_G_GetEnvelope(g, &box);
     xyz[0] = (box.MinX + box.MaxX) / 2;
     xyz[1] = (box.MinY + box.MaxY) / 2;
     xyz[2] = NAN;
@@ -177,26 +173,26 @@ static bool place_of(OGRFeatureH feature, double xyz[3], bool *is_point) {
 }
 
 static int dimension_of(OGRFeatureH feature) {
-    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
-    return g ? NOC_CLAMP(OGR_G_GetDimension(g), GEO_POINTS, GEO_AREAS) : GEO_POINTS;
+    OGRGeometryH g = gdal.OGR_F_GetGeometryRef(feature);
+    return g ? NOC_CLAMP(gdal.OGR_G_GetDimension(g), GEO_POINTS, GEO_AREAS) : GEO_POINTS;
 }
 
 /* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none;
  * free() it. False: memory was refused. */
 static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs) {
-    OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
-    *geographic = srs && OSRIsGeographic(srs);
+    OGRSpatialReferenceH srs = gdal.OGR_L_GetSpatialRef(layer);
+    *geographic = srs && gdal.OSRIsGeographic(srs);
     *crs = NULL;
     if (!srs)
         return true;
-    const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
+    const char *authority = gdal.OSRGetAuthorityName(srs, NULL), *code = gdal.OSRGetAuthorityCode(srs, NULL);
     if (authority && code)
         return (*crs = noc_format("%s%s:%s", named ? "" : (char[]){ GEO_CRS_TAKEN, 0 }, authority, code)) != NULL;
     char *wkt = NULL;
     const char *const options[] = { "FORMAT=WKT2_2018", NULL };
-    bool told = OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
+    bool told = gdal.OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
     *crs = told ? noc_strdup(wkt) : NULL;
-    CPLFree(wkt);
+    gdal.VSIFree(wkt);
     return *crs || !told;
 }
 
@@ -205,8 +201,8 @@ static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs)
 static bool looks_projected(OGRLayerH layer) {
     size_t inside = 0, outside = 0;
     OGRFeatureH feature;
-    OGR_L_ResetReading(layer);
-    while (inside + outside < 200 && (feature = OGR_L_GetNextFeature(layer))) {
+    gdal.OGR_L_ResetReading(layer);
+    while (inside + outside < 200 && (feature = gdal.OGR_L_GetNextFeature(layer))) {
         double p[3];
         bool is_point;
         if (place_of(feature, p, &is_point)) {
@@ -214,9 +210,9 @@ static bool looks_projected(OGRLayerH layer) {
             inside += on_earth;
             outside += !on_earth;
         }
-        OGR_F_Destroy(feature);
+        gdal.OGR_F_Destroy(feature);
     }
-    OGR_L_ResetReading(layer);
+    gdal.OGR_L_ResetReading(layer);
     return outside > inside;
 }
 
@@ -240,14 +236,14 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
 /* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was
  * refused. */
 static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
-    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
-    int count = OGR_FD_GetFieldCount(defn);
+    OGRFeatureDefnH defn = gdal.OGR_L_GetLayerDefn(layer);
+    int count = gdal.OGR_FD_GetFieldCount(defn);
     const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
     if (!names)
         return false;
     *tags = false;
     for (int i = 0; i < count; i++) {
-        names[i] = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
+        names[i] = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
         *tags |= lamp_key_tells(names[i]) || !strcmp(names[i], "other_tags") || !strcmp(names[i], "all_tags");
     }
     *inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
@@ -259,8 +255,8 @@ static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inven
 static void leave(map_reading *m, OGRFeatureH feature, const double xyz[3]) {
     OGREnvelope box;
     char id[64];
-    snprintf(id, sizeof(id), "feature %lld", (long long)OGR_F_GetFID(feature));
-    OGR_G_GetEnvelope(OGR_F_GetGeometryRef(feature), &box);
+    snprintf(id, sizeof(id), "feature %lld", (long long)gdal.OGR_F_GetFID(feature));
+    gdal.OGR_G_GetEnvelope(gdal.OGR_F_GetGeometryRef(feature), &box);
     bool somewhere = isfinite(xyz[0]) && isfinite(xyz[1]);
     lamp_writer_unread(&m->writer, dimension_of(feature), id,
                        somewhere ? (double[]){ box.MinX, box.MaxX, box.MinY, box.MaxY } : NULL);
@@ -304,14 +300,14 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
 }
 
 static noc_status read_features(map_reading *m, OGRLayerH layer) {
-    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
-    GIntBig total = m->format->kind == MAP_OSM ? 0 : OGR_L_GetFeatureCount(layer, FALSE);
+    OGRFeatureDefnH defn = gdal.OGR_L_GetLayerDefn(layer);
+    GIntBig total = m->format->kind == MAP_OSM ? 0 : gdal.OGR_L_GetFeatureCount(layer, FALSE);
     OGRFeatureH feature;
     size_t n = 0;
     noc_status status = NOC_OK;
-    while (!status && (feature = OGR_L_GetNextFeature(layer))) {
+    while (!status && (feature = gdal.OGR_L_GetNextFeature(layer))) {
         status = read_feature(m, feature, defn);
-        OGR_F_Destroy(feature);
+        gdal.OGR_F_Destroy(feature);
         if (++n % 1024 == 0 && !status && m->writer.sink->progress &&
             !m->writer.sink->progress(m->writer.sink->ctx, total > 0 ? NOC_MIN((double)n / (double)total, 1) : 0))
             status = NOC_ERR_CANCELLED;
@@ -323,21 +319,21 @@ static noc_status read_features(map_reading *m, OGRLayerH layer) {
 
 /* Do the values of the layer's points say what they are? */
 static noc_status read_kinds(map_reading *m, OGRLayerH layer) {
-    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
+    OGRFeatureDefnH defn = gdal.OGR_L_GetLayerDefn(layer);
     OGRFeatureH feature;
     bool kept = true;
     lamp_kinds_free(&m->writer.kinds);
     m->writer.kinds = (lamp_kinds){ 0 };
-    OGR_L_ResetReading(layer);
-    while (kept && (feature = OGR_L_GetNextFeature(layer))) {
+    gdal.OGR_L_ResetReading(layer);
+    while (kept && (feature = gdal.OGR_L_GetNextFeature(layer))) {
         double xyz[3];
         bool is_point;
         if (place_of(feature, xyz, &is_point) && is_point)
             kept = map_collect_fields(feature, defn, false, &m->tags) &&
                    lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
-        OGR_F_Destroy(feature);
+        gdal.OGR_F_Destroy(feature);
     }
-    OGR_L_ResetReading(layer);
+    gdal.OGR_L_ResetReading(layer);
     lamp_kinds_decide(&m->writer.kinds);
     return kept ? NOC_OK : map_no_memory(m);
 }
@@ -363,7 +359,7 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
 static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     lamp_writer *w = &m->writer;
     noc_status status = judge(m, layer);
-    m->building_layer = w->sink->footprint && outline_layer(OGR_L_GetName(layer));
+    m->building_layer = w->sink->footprint && outline_layer(gdal.OGR_L_GetName(layer));
     if (!status && (!w->strange || w->sink->inspect || w->sink->footprint || w->sink->road))
         status = start_layer(m, layer);
     if (!status)
@@ -375,7 +371,7 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
         w->inventory = true;
         w->features = 0;
         w->seen = (geo_features){ 0 };
-        OGR_L_ResetReading(layer);
+        gdal.OGR_L_ResetReading(layer);
         status = read_features(m, layer);
     }
     return status;
@@ -384,7 +380,7 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
 static noc_status read_layers(map_reading *m) {
     if (m->format->kind == MAP_OSM) {
         map_choose_layers(m, "points");
-        OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
+        OGRLayerH points = gdal.GDALDatasetGetLayerByName(m->source.dataset, "points");
         noc_status status = points ? read_layer(m, points) : map_source_error(&m->source);
         if (!status && (m->writer.sink->footprint || m->writer.sink->road))
             status = map_read_osm_shapes(m);
@@ -395,9 +391,9 @@ static noc_status read_layers(map_reading *m) {
         return status;
     }
     noc_status status = NOC_OK;
-    int count = GDALDatasetGetLayerCount(m->source.dataset);
+    int count = gdal.GDALDatasetGetLayerCount(m->source.dataset);
     for (int i = 0; i < count && !status; i++)
-        status = read_layer(m, GDALDatasetGetLayer(m->source.dataset, i));
+        status = read_layer(m, gdal.GDALDatasetGetLayer(m->source.dataset, i));
     return status;
 }
 
@@ -456,5 +452,6 @@ const noc_reader noc_reader_vector = {
     .probe = probe,
     .probe_named = lamp_csv_probe_table,
     .read = read_vector,
-    .foreign = foreign
+    .foreign = foreign,
+    .load = gdal_load
 };

@@ -101,9 +101,9 @@ static void allow_system(int rules) {
 }
 
 /* GDAL and PROJ of one's own have their data beside themselves. */
-static void allow_beside(int rules, const char *function) {
+static void allow_beside(int rules, void *library, const char *function) {
     Dl_info info;
-    void *at = dlsym(RTLD_DEFAULT, function);
+    void *at = dlsym(library, function);
     char *path = at && dladdr(at, &info) ? realpath(info.dli_fname, NULL) : NULL,
          *slash = path ? strrchr(path, '/') : NULL;
     if (slash) {
@@ -142,8 +142,8 @@ static void confine_files(const char *path, bool whole, bool anywhere) {
     if (rules < 0)
         return;
     allow_system(rules);
-    allow_beside(rules, "GDALOpenEx");
-    allow_beside(rules, "proj_create");
+    allow_beside(rules, dlopen(NOC_GDAL_LIBRARY, RTLD_LAZY | RTLD_NOLOAD), "GDALOpenEx");
+    allow_beside(rules, RTLD_DEFAULT, "proj_create");
     if (anywhere)
         allow(rules, "/", READ_FOLDERS);
     else

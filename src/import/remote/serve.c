@@ -276,6 +276,8 @@ int noc_reader_main(void) {
         getppid() != s.asked.sink.parent)
         /* not started by the library, or whoever started it ended before it asked to end with it */
         return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1;
+    if (s.asked.reader->load)
+        s.asked.reader->load(); /* why it cannot be is told by who reads */
     remote_confine(s.asked.path, s.asked.reader->read_parts != NULL, &s.asked.params);
     serve(&s);
     _exit(0); /* what is left to tidy up goes with the process */
