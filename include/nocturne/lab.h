@@ -1,8 +1,9 @@
 /* nocturne/lab.h: the laboratory: how far a method or a setting is from the truth, and what time it takes
  * (docs/experiments.md).
  *
- * Two ways lead in. noc_lab_reference and noc_lab_measure compare one configuration under one camera with a reference:
- * nothing is written, figures come back frame by frame. A noc_lab runs a spec, which is what `nocturne experiment`
+ * Three ways lead in. noc_lab_reference and noc_lab_measure compare one configuration under one camera with a
+ * reference: nothing is written, figures come back frame by frame. A noc_lab_timer asks for the time alone, of several
+ * configurations in turn, as `nocturne bench` does. A noc_lab runs a spec, which is what `nocturne experiment`
  * reads: many configurations under many cameras, into a folder of rows, pictures, plots and a report. What an earlier
  * run left in the folder is gone on with.
  *
@@ -84,6 +85,44 @@ NOC_API noc_status noc_lab_measure(noc_device *device, const noc_scene *scene, c
                                    const noc_render_params *render, const noc_image *reference,
                                    const noc_lab_measure_params *params, noc_lab_frame *frames, size_t *count,
                                    noc_log *log);
+
+/* ---- time alone ---- */
+
+/* What is timed: frames of a scene on a device, without a reference. */
+typedef struct noc_lab_case {
+    noc_device *device; /* this and the scene must outlive the timer */
+    const noc_scene *scene;
+    noc_camera camera;
+    noc_render_params render;
+    bool floor; /* the trace floor, too, of one more frame after each that counts */
+} noc_lab_case;
+
+/* Of one case: medians over its frames, each number by itself. */
+typedef struct noc_lab_times {
+    size_t frames; /* that count */
+    double wall_seconds, cpu_seconds;
+    double pass_seconds[NOC_PASS_COUNT]; /* thread seconds, as in noc_frame_stats */
+    size_t floors;                       /* trace floors; 0: the next is 0 */
+    noc_trace_floor floor;
+    noc_frame_stats first; /* of the very first frame, which makes what the others find there, and does not count */
+    noc_frame_stats last;
+    noc_light_stats lights; /* of the last frame */
+} noc_lab_times;
+
+/* Times cases against each other: in a round each of them renders a frame, so that whatever else the machine does falls
+ * on all of them alike. A timer belongs to one thread at a time. log may be NULL; it must outlive the timer. NULL: no
+ * memory, reported. */
+typedef struct noc_lab_timer noc_lab_timer;
+NOC_API noc_lab_timer *noc_lab_timer_create(noc_log *log);
+NOC_API void noc_lab_timer_destroy(noc_lab_timer *timer);
+/* A case more, numbered from 0 in their order: makes its view, and renders two frames that do not count. progress may
+ * be NULL. After an error, and NOC_ERR_CANCELLED, it is not there. */
+NOC_API noc_status noc_lab_timer_add(noc_lab_timer *timer, const noc_lab_case *of, const noc_progress *progress);
+/* One frame more of each case, every second round in reverse order. What was measured before an error, and
+ * NOC_ERR_CANCELLED, counts. */
+NOC_API noc_status noc_lab_timer_round(noc_lab_timer *timer, const noc_progress *progress);
+/* NOC_ERR_ARGUMENT where there is none of that index. */
+NOC_API noc_status noc_lab_timer_get(const noc_lab_timer *timer, size_t index, noc_lab_times *times);
 
 /* ---- specs ---- */
 

@@ -10,6 +10,7 @@
  *     series         means over repetitions               <- charts, plot (on svg), summary (on markdown) <- report
  *     sheet          pictures side by side                <- crops
  *     lab            all of them: noc_lab_run and the others
+ *     timer          by itself: time without a reference
  */
 #ifndef NOC_LAB_SESSION_H
 #define NOC_LAB_SESSION_H

@@ -300,6 +300,11 @@ static noc_camera camera;
     P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
     P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
     P(0, noc_view_trace_floor(NULL, &camera, NULL, &(noc_trace_floor){ 0 }) == NOC_ERR_ARGUMENT)                       \
+    P(noc_lab_timer_destroy(noc_lab_timer_create(NULL)), true)                                                         \
+    P(noc_lab_timer_destroy(NULL), true)                                                                               \
+    P(0, noc_lab_timer_add(NULL, &(noc_lab_case){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_lab_timer_round(NULL, NULL) == NOC_ERR_ARGUMENT)                                                          \
+    P(0, noc_lab_timer_get(NULL, 0, &(noc_lab_times){ 0 }) == NOC_ERR_ARGUMENT)                                        \
     P(0, noc_emitter_kind_name((noc_emitter_kind)99) != NULL)                                                          \
     P(noc_region_destroy(noc_region_create(NULL)), true)                                                               \
     P(noc_region_destroy(NULL), true)                                                                                  \
