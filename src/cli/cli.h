@@ -41,7 +41,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_render, cli_view, cli_influence, cli_build, cli_info, cli_init, cli_compare,
-    cli_experiment;
+    cli_experiment, cli_bench;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 

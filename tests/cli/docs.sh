@@ -58,7 +58,7 @@ mkdir files home
 mkdir files/folder
 cat >offers <<'OFFERS'
 nocturne comp: compare
-nocturne : build compare experiment help influence info init render view
+nocturne : bench build compare experiment help influence info init render view
 nocturne help co: compare
 nocturne render --method re: reference restir
 nocturne render --method=re: reference restir
@@ -118,7 +118,7 @@ same_words() { # each line sorted, without what stands before a value, and witho
     done
 }
 sed 's/.*: *//' offers >wanted
-for command in render info compare experiment; do # all its options, as its help has them
+for command in render info compare experiment bench; do # all its options, as its help has them
     echo "nocturne $command --" >>lines
     "$program" help $command | grep -o -- '^  \(-., \)\?--[^ ]*' |
         sed -e 's/.*--/--/' -e 's/--\[no-\]\(infer-lamps\|map-surfaces\|mp4\|scene\|traffic\|windows\)/--\1 --no-\1/' \
