@@ -159,8 +159,8 @@ typedef struct noc_import_params {
     noc_texts group_states; /* "NAME=STATE", as noc_scene_say_group has it: of groups once all is there; default none */
     bool each_lamp;         /* the report tells of each lamp's lights: noc_report_get_lamp; default false */
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
-    int threads; /* that read files of cities at once, and make windows; 0, the default: one a core. The scene is the
-                  * same for any number */
+    int threads; /* that read files of cities at once, read an OBJ, and make windows; 0, the default: one a core. The
+                  * scene is the same for any number */
     noc_progress progress;
 } noc_import_params;
 

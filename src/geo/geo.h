@@ -325,6 +325,9 @@ void geo_triangles_free(geo_triangles *t);
 /* The same as often as another list counted it: reason is copied, examples are ids as that list joined them. */
 void geo_issues_add(geo_issues *issues, geo_issue_kind kind, const char *reason, size_t count, const char *examples);
 
+/* All that another list counted, after this one's own, as if it had been counted here. */
+void geo_issues_merge(geo_issues *issues, const geo_issues *others);
+
 /* Issues storage, used by the importer. */
 geo_issues *geo_issues_create(void) NOC_MUST_USE; /* NULL: memory was refused */
 void geo_issues_destroy(geo_issues *issues);

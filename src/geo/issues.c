@@ -75,6 +75,19 @@ void geo_issues_add(geo_issues *issues, geo_issue_kind kind, const char *reason,
         l->count += count - 1;
 }
 
+void geo_issues_merge(geo_issues *issues, const geo_issues *others) {
+    issues->names.refused = issues->names.refused || others->names.refused;
+    for (size_t i = 0; i < others->lines.len; i++) {
+        const struct line *from = &others->lines.data[i];
+        struct line *to = find_line(issues, from->kind, from->reason);
+        size_t before = to ? to->count : 0;
+        for (int k = 0; k < from->example_count; k++)
+            geo_issue(issues, from->kind, from->reason, from->examples[k]);
+        if (to)
+            to->count = before + from->count;
+    }
+}
+
 geo_issue_kind geo_issues_kind(const geo_issues *issues, size_t i) { return issues->lines.data[i].kind; }
 
 size_t geo_issues_count(const geo_issues *issues) { return issues ? issues->lines.len : 0; }

@@ -20,6 +20,8 @@ typedef struct import_budget {
     void *claimant;
 } import_budget;
 import_budget import_budget_of(const noc_import_params *params);
+/* How many threads work on so many items. params: NULL: one. */
+size_t import_threads(const noc_import_params *params, size_t items);
 /* NOC_ERR_MEMORY after reporting where `what` of the input would take more bytes than it may. */
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log);
 /* The same question without a word. */
@@ -106,6 +108,9 @@ typedef struct mesh_scene {
     geo_issues *issues;
 } mesh_scene;
 mesh_parts mesh_scene_parts(mesh_scene *to);
+
+/* Threads that read one OBJ at most. */
+#define OBJ_THREADS 16
 
 typedef struct noc_reader {
     const char *name; /* "CityGML" */

@@ -358,8 +358,11 @@ static void obj_libraries_are_read_once(void **state) {
     obj_folder beside = { .path = place };
     import_budget all = { .memory = 1e9 };
     geo_issues *issues = geo_issues_create();
-    assert_int_equal(obj_plain_materials(text, strlen(text), &beside, NULL, &all, issues, "once.obj", NULL), NOC_OK);
+    obj_chunks chunks = { 0 };
+    assert_true(obj_chunks_cut(&chunks, text, strlen(text), 1));
+    assert_int_equal(obj_plain_materials(&chunks, &beside, NULL, &all, issues, "once.obj", NULL), NOC_OK);
     assert_string_equal(text, "mtllib once.mtl\n                \nmtllib other.mtl\n               \nv 0 0 0\n");
+    obj_chunks_free(&chunks);
     geo_issues_destroy(issues);
 }
 

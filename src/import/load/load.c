@@ -250,7 +250,7 @@ static int stage(const importer *im, const input *in) {
 }
 
 size_t import_threads(const noc_import_params *params, size_t items) {
-    long cores = params->threads ? params->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    long cores = !params ? 1 : params->threads ? params->threads : sysconf(_SC_NPROCESSORS_ONLN);
     return NOC_MIN(items, (size_t)NOC_CLAMP(cores, 1, MOST_THREADS));
 }
 

@@ -527,8 +527,6 @@ void queue_claim(void *queue, double bytes);      /* import_budget.claim */
 
 /* load.c: reads a file that is not built in. */
 noc_status read_file(reading *r);
-/* How many threads work on so many items. */
-size_t import_threads(const noc_import_params *params, size_t items);
 
 /* load.c: noc_scene_load and noc_inspect with a table of readers of one's own (tests bring theirs). */
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,

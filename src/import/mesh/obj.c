@@ -308,12 +308,12 @@ static void plain_lines(library *lib) {
 }
 
 /* Libraries of the text, and a triangle, without which Assimp refuses a file. */
-static bool ask_for_materials(library *lib) {
+static bool ask_for_materials(library *lib, const obj_chunks *text) {
     static const char triangle[] = "v 0 0 0\nf 1 1 1\n";
     bool memory = true;
-    for (const char *p = lib->data, *stop = p + lib->size, *end; p < stop && memory; p = end + (end < stop)) {
-        const char *newline = memchr(p, '\n', (size_t)(stop - p));
-        end = newline ? newline : stop;
+    for (size_t i = 0; i < text->asked.len && memory; i++) {
+        const char *p = text->asked.data[i], *newline = memchr(p, '\n', (size_t)(text->stop - p));
+        const char *end = newline ? newline : text->stop;
         while (p < end && (*p == ' ' || *p == '\t'))
             p++;
         size_t n = (size_t)(end - p);
@@ -338,17 +338,20 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
     obj_text text = { 0 };
+    obj_chunks chunks = { 0 };
     const obj_target to = {
         .parts = parts, .images = &lib.images, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread
     };
     plain_lines(&lib);
-    status = folder && lib.main_name
-                 ? obj_plain_materials(lib.data, lib.size, &lib.folder, textures ? &lib.images : NULL,
-                                       noc_stream_budget(stream), parts->issues, name, parts->log)
-                 : noc_no_memory(parts->log, path);
+    status =
+        folder && lib.main_name && obj_chunks_cut(&chunks, lib.data, lib.size, (int)import_threads(params, OBJ_THREADS))
+            ? obj_plain_materials(&chunks, &lib.folder, textures ? &lib.images : NULL, noc_stream_budget(stream),
+                                  parts->issues, name, parts->log)
+            : noc_no_memory(parts->log, path);
     if (!status &&
-        (!obj_text_read(&text, lib.data, lib.size, lib.images.list.len > 0, parts->issues) || !ask_for_materials(&lib)))
+        (!obj_text_read(&text, &chunks, lib.images.list.len > 0, parts->issues) || !ask_for_materials(&lib, &chunks)))
         status = noc_no_memory(parts->log, name);
+    obj_chunks_free(&chunks);
     free(lib.data);
     if (!status && text.faces.len) {
         status = read_obj(path, &lib, &text, &to);

@@ -55,18 +55,74 @@ static bool add_library(obj_folder *folder, const char *name, obj_images *images
     return memory;
 }
 
-noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, obj_images *images, import_budget *budget,
+/* ---- a look at all lines ---- */
+
+typedef struct look {
+    NOC_ARRAY(char *) asked;
+    size_t lines, faces, vertices;
+    bool refused;
+} look;
+
+typedef struct looking {
+    look *slots;
+    obj_chunks *text;
+    bool places; /* in images are of use */
+    size_t lines, faces, vertices;
+} looking;
+
+static void look_at(void *ctx, const obj_chunk *chunk, size_t slot) {
+    const looking *all = ctx;
+    look *l = &all->slots[slot];
+    l->lines = l->faces = l->vertices = l->asked.len = 0;
+    for (char *line = chunk->begin, *stop = chunk->end, *end; line < stop && !l->refused; line = end + (end < stop)) {
+        char *p = line;
+        end = line_end(line, stop);
+        l->lines += end < stop;
+        while (p < end && is_blank(*p))
+            p++;
+        size_t n = (size_t)(end - p);
+        if (n < 2)
+            continue;
+        if (is_blank(p[1])) {
+            l->faces += *p == 'f';
+            l->vertices += *p == 'v';
+        } else if (*p == 'v') {
+            l->vertices += all->places && n > 2 && p[1] == 't' && is_blank(p[2]);
+        } else if (n > 6 && (!memcmp(p, "mtllib", 6) || !memcmp(p, "usemtl", 6))) {
+            l->refused = !array_push(&l->asked, line);
+        }
+    }
+}
+
+static bool take_look(void *ctx, obj_chunk *chunk, size_t slot) {
+    looking *all = ctx;
+    const look *l = &all->slots[slot];
+    chunk->line = all->lines + 1;
+    all->lines += l->lines;
+    all->faces += l->faces;
+    all->vertices += l->vertices;
+    return !l->refused && array_append(&all->text->asked, l->asked.data, l->asked.len);
+}
+
+static bool look_at_all(looking *all) {
+    all->slots = noc_calloc(all->text->slots, sizeof(*all->slots));
+    bool memory = all->slots && obj_chunks_each(all->text, look_at, take_look, all);
+    for (size_t i = 0; all->slots && i < all->text->slots; i++)
+        array_free(&all->slots[i].asked);
+    free(all->slots);
+    return memory;
+}
+
+noc_status obj_plain_materials(obj_chunks *text, obj_folder *folder, obj_images *images, import_budget *budget,
                                geo_issues *issues, const char *name, noc_log *log) {
+    looking all = { .text = text, .places = images != NULL };
     noc_map defined = { 0 }, libraries = { 0 };
-    size_t faces = 0, vertices = 0, undefined = 0;
+    size_t undefined = 0;
     char unknown = '?'; /* a name that no library defines */
-    bool memory = true;
-    char *stop = data + size;
-    for (char *p = data, *end; p < stop && memory; p = end + (end < stop)) {
+    bool memory = look_at_all(&all);
+    for (size_t i = 0; i < text->asked.len && memory; i++) {
+        char *p = text->asked.data[i], *end = line_end(p, text->stop);
         statement s;
-        end = line_end(p, stop);
-        faces += is_a(p, end, "f", &s);
-        vertices += is_a(p, end, "v", &s) || (images && is_a(p, end, "vt", &s));
         if (is_a(p, end, "mtllib", &s)) {
             char *library = text_of(&s);
             bool fresh;
@@ -79,9 +135,9 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, obj_
     }
     while (unknown > '!' && map_get(&defined, (char[]){ unknown, 0 }, NULL))
         unknown--;
-    for (char *p = data, *end; p < stop && memory; p = end + (end < stop)) {
+    for (size_t i = 0; i < text->asked.len && memory; i++) {
+        char *p = text->asked.data[i], *end = line_end(p, text->stop);
         statement s;
-        end = line_end(p, stop);
         if (!is_a(p, end, "usemtl", &s))
             continue;
         char *material = text_of(&s);
@@ -94,8 +150,9 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, obj_
         }
         free(material);
     }
-    double cost = (double)size * TEXT_COST + (double)(defined.len + undefined) * MATERIAL_COST +
-                  (double)faces * FACE_COST + (double)vertices * VERTEX_COST;
+    double size = text->list.len ? (double)(text->stop - text->list.data[0].begin) : 0;
+    double cost = size * TEXT_COST + (double)(defined.len + undefined) * MATERIAL_COST + (double)all.faces * FACE_COST +
+                  (double)all.vertices * VERTEX_COST;
     map_free(&defined);
     map_free(&libraries);
     return memory ? import_affords(budget, cost, name, "its faces and materials", log) : noc_no_memory(log, name);

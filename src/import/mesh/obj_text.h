@@ -3,6 +3,7 @@
 #define NOC_IMPORT_OBJ_TEXT_H
 
 #include "geo/geo.h"
+#include "import/mesh/obj_chunks.h"
 
 #define OBJ_NOWHERE UINT32_MAX /* the place in a texture of a corner that has none */
 
@@ -24,11 +25,11 @@ typedef struct obj_text {
     noc_arena names;
 } obj_text;
 
-/* Reads the statements of a text that ends with a 0. Indices count from 1 over the whole file; negative ones count back
- * from the last vertex before the face. A weight is divided by, colours, normals and remarks are passed over. Faces
- * with vertices that are not there, or of fewer than three, are left out and counted, as are those with a vertex that
- * is not three numbers. places: those in textures are of use. false: no memory. */
-bool obj_text_read(obj_text *t, const char *data, size_t size, bool places, geo_issues *issues);
+/* Reads the statements of a text whose lines are counted. Indices count from 1 over the whole file; negative ones count
+ * back from the last vertex before the face. A weight is divided by, colours, normals and remarks are passed over.
+ * Faces with vertices that are not there, or of fewer than three, are left out and counted, as are those with a vertex
+ * that is not three numbers. places: those in textures are of use. false: no memory. */
+bool obj_text_read(obj_text *t, obj_chunks *text, bool places, geo_issues *issues);
 void obj_text_free(obj_text *t);
 
 #endif

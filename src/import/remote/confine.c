@@ -228,9 +228,10 @@ bool remote_short_of_memory(void) {
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
     unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
     limit(RLIMIT_CORE, 0, 0);
-    /* Where who started it no longer looks at the clock. SIGXCPU comes at the limit and tells why the process ended;
-     * SIGKILL comes after the grace. */
-    limit(RLIMIT_CPU, (rlim_t)NOC_MIN(params->reader_time, 1e9) + 2, 2);
+    /* Where who started it no longer looks at the clock, of all threads together: only meshes are read by some. SIGXCPU
+     * comes at the limit and tells why the process ended; SIGKILL comes after the grace. */
+    double threads = whole ? NOC_MAX(params->threads, 1) : 1;
+    limit(RLIMIT_CPU, (rlim_t)(NOC_MIN(params->reader_time, 1e9) * threads) + 2, 2);
 #ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
     limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory), 0);
 #endif

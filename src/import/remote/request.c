@@ -54,8 +54,10 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
         ask_conditions(params->luminaires[i].conditions, params->luminaires[i].condition_count, batch, &one);
     for (size_t i = 0; i < params->group_count; i++)
         ask_conditions(params->groups[i].conditions, params->groups[i].condition_count, batch, &one);
-    remote_asked asked = { (int32_t)getpid(),  sink->named_lamps,  sink->inspect,    sink->footprint != NULL,
-                           sink->road != NULL, sink->named_tracks, params->each_lamp };
+    remote_asked asked = { (int32_t)getpid(),       (uint32_t)import_threads(params, OBJ_THREADS),
+                           sink->named_lamps,       sink->inspect,
+                           sink->footprint != NULL, sink->road != NULL,
+                           sink->named_tracks,      params->each_lamp };
     remote_put(&one, &asked, sizeof(asked));
     remote_add(batch, REMOTE_SINK, &one);
     remote_add(batch, REMOTE_GO, &one);
@@ -96,6 +98,7 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
                      flags[offsetof(remote_asked, each_lamp)] <= 1;
         if (whole)
             memcpy(&q->sink, flags, sizeof(flags));
+        q->params.threads = (int)NOC_CLAMP(q->sink.threads, 1, OBJ_THREADS);
         r->bad = !whole;
     }
     return !r->bad && !q->texts.refused;

@@ -2,6 +2,7 @@
 #include "import/load/load.h"
 #include "import/remote/remote.h"
 
+#include <malloc.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -272,6 +273,7 @@ int noc_reader_main(void) {
     socklen_t size = sizeof(type);
     serving s = { 0 };
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    mallopt(M_ARENA_MAX, 1); /* each takes addresses, of which the helper gets few */
     if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) ||
         getppid() != s.asked.sink.parent)
         /* not started by the library, or whoever started it ended before it asked to end with it */
