@@ -229,6 +229,30 @@ static void test_moved_frame(void **state) {
         moved_frame(&configs[i]);
 }
 
+/* ---- frames at rest ---- */
+
+/* What passes need is there after some frames: the others ask for no memory. One thread, so that it is always the same
+ * scratch that a tile finds. */
+static void test_at_rest(void **state) {
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(configs); i++) {
+        noc_scene *s = yard();
+        noc_view *r = own_view(s, 1, NULL);
+        noc_render_params p = params_of(&configs[i]);
+        for (int frame = 0; frame < 12; frame++) {
+            noc_refuse_allocation(UINT64_MAX, false);
+            assert_int_equal(noc_view_render(r, camera(), &p, NULL), NOC_OK);
+            uint64_t asked = noc_allocations();
+            noc_refuse_allocation(0, false);
+            if (frame > 7 && asked)
+                fail_msg("%s: frame %d asks for memory %d times", configs[i].name, frame, (int)asked);
+            assert_true(frame || asked);
+        }
+        close_view(r);
+        noc_scene_destroy(s);
+    }
+}
+
 /* ---- what is read from a renderer, and its trace floor ---- */
 
 static noc_status read_all(noc_view *r, const noc_render_params *p) {
@@ -293,6 +317,7 @@ static void test_views(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_frame), cmocka_unit_test(test_moved_frame),
-                                        cmocka_unit_test(test_reading), cmocka_unit_test(test_views) };
+                                        cmocka_unit_test(test_at_rest), cmocka_unit_test(test_reading),
+                                        cmocka_unit_test(test_views) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
