@@ -204,8 +204,12 @@ static int work(bench *b) {
         bench_json(b, !interrupted, stdout);
     if (args->output && !write_json(b, !interrupted))
         return CLI_FAILURE;
+    bool any = false;
+    for (int s = 0; s < BENCH_SECTIONS; s++)
+        any = any || b->measured[s];
     if (interrupted)
-        cli_error("interrupted: tables that were not complete are left out");
+        cli_error(any ? "interrupted: tables that were not complete are left out"
+                      : "interrupted: no table was complete");
     return interrupted ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
 }
 

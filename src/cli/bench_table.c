@@ -194,7 +194,7 @@ static void print_memory(const bench *b) {
     }
     if (still) {
         double triangles = (double)b->info.triangles;
-        printf("  bytes a triangle   scene %.0f, with its lights; ray tracing structure %.0f\n",
+        printf("  bytes a triangle   scene %.0f, with its lights and images; ray tracing structure %.0f\n",
                (double)b->info.memory_bytes / triangles, (double)still->times.last.structure_bytes / triangles);
     }
     const char *before = "  bytes a light     ";
