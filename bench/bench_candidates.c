@@ -1,12 +1,16 @@
 /* How many light candidates (draw, point on the light, unshadowed target, reservoir) a core makes a second, by
  * instruction set, by the layout of the lights in memory, and by what is lit by what. Million a second of thread CPU
- * time, the best of RUNS. All rows of one scene must agree on every choice and weight: the checksums are compared.
- * Usage: bench_candidates [surfaces [M]] */
+ * time, the best of RUNS. Two columns draw for each surface alone, from arrays of fields and from records; the third is
+ * the renderer's kernel, whose blocks of surfaces share samples (core/presampled.h), which it draws too. All rows
+ * of a column must agree on every choice and weight: the checksums are compared. Usage: bench_candidates [surfaces [M]]
+ */
 #include "candidates.h"
 
+#include "backend/cpu/kernels.h"
 #include "base/base.h"
 #include "core/light.h"
 #include "../tests/core/no_profiles.h"
+#include "core/presample_limits.h"
 #include "core/random.h"
 #include "scene/scene.h"
 
@@ -57,6 +61,54 @@ static void make_surfaces(float *f[13], uint32_t count, float f0) {
     }
 }
 
+/* Of the renderer, with the subsets of a picture of a million pixels, drawn for so many, too. */
+static uint64_t presampled(const kernels *k, const candidates_job *job, float f0, bool first_time) {
+    enum { PIXELS = 1 << 20 };
+    static presample_row samples[PRESAMPLES / BLOCK];
+    static presample_pick1 drawn[MOST_DRAWS * BLOCK];
+    static float weighed[MOST_DRAWS][BLOCK];
+    static gblock g;
+    uint32_t subsets = presample_subsets((uint32_t)job->m, PIXELS / BLOCK);
+    uint32_t fresh = (uint32_t)((uint64_t)subsets * job->surface_count / PIXELS) + 1;
+    const noc_material_record material = { .albedo = { .2f, .2f, .2f }, .f0 = f0, .alpha = .3f };
+    frame_constants frame = { .width = 16, .height = job->surface_count / 16, .blocks_x = 4, .seed = 1 };
+    struct core_context ctx = { .frame = &frame,
+                                .lights = (const light_record *)job->records,
+                                .light_count = job->lights,
+                                .materials = &material };
+    frame.camera.eye[2] = 1000;
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < (first_time ? subsets : fresh); i++)
+        k->presample(&ctx, i, job->m, false, drawn, samples + (size_t)i * (size_t)job->m);
+    for (uint32_t first = 0; first < job->surface_count; first += BLOCK) {
+        float *const to[6] = { g.px, g.py, g.pz, g.nx, g.ny, g.nz };
+        rblock r;
+        uint32_t block = first / BLOCK;
+        for (int j = 0; j < 6; j++)
+            memcpy(to[j], job->surfaces[j] + first, BLOCK * sizeof(float));
+        k->presampled(&ctx, &g, 0xffff, (int)(block % 4) * 4, (int)(block / 4) * 4, job->m, samples, subsets, weighed,
+                      &r);
+        for (int l = 0; l < BLOCK; l++) {
+            uint32_t w;
+            memcpy(&w, &r.w[l], sizeof(w));
+            sum += (uint64_t)r.light[l] * 2654435761u + w;
+        }
+    }
+    return sum;
+}
+
+static double measure_presampled(const kernels *k, const candidates_job *job, float f0, uint64_t *sum) {
+    double best = 0;
+    presampled(k, job, f0, true);
+    for (int i = 0; i < RUNS; i++) {
+        double t = cpu_seconds();
+        *sum = presampled(k, job, f0, false);
+        t = cpu_seconds() - t;
+        best = NOC_MAX(best, 1e-6 * job->surface_count * job->m / t);
+    }
+    return best;
+}
+
 static double measure(candidates_fn *fn, const candidates_job *job, int layout, uint64_t *sum) {
     double best = 0;
     for (int i = 0; i < RUNS; i++) {
@@ -92,16 +144,19 @@ static bool supported(size_t set) {
 }
 
 /* Returns false when the rows disagree. */
-static bool bench_scene(const char *name, candidates_job *job, noc_light_record *records, float *soa, bool spheres) {
+static bool bench_scene(const char *name, candidates_job *job, noc_light_record *records, float *soa, bool spheres,
+                        float f0) {
+    const kernels *tables[NOC_MAX_KERNELS];
     bool agree = true;
-    uint64_t first_sum = 0;
+    uint64_t first_sum = 0, shared_sum = 0;
+    int count = noc_runnable_kernels(tables);
     make_lights(records, job->lights, spheres);
     for (int f = 0; f < 16; f++)
         for (uint32_t i = 0; i < job->lights; i++)
             memcpy(&soa[(size_t)f * job->lights + i], (const float *)(records + i) + f, sizeof(float));
     for (int f = 0; f < 16; f++)
         job->soa[f] = soa + (size_t)f * job->lights;
-    printf("%s, %u lights\n%14s %12s %12s %12s\n", name, job->lights, "", "SoA gather", "records", "prefetched");
+    printf("%s, %u lights\n%14s %12s %12s %12s\n", name, job->lights, "", "SoA gather", "records", "presampled");
     for (size_t i = 0; i < NOC_COUNT(sets); i++) {
         if (!supported(i)) {
             printf("%14s  not on this machine\n", sets[i].name);
@@ -114,6 +169,12 @@ static bool bench_scene(const char *name, candidates_job *job, noc_light_record 
             fflush(stdout);
             agree = agree && (!first_sum || sum == first_sum);
             first_sum = sum;
+        }
+        if ((int)i < count) {
+            uint64_t sum;
+            printf(" %12.0f", measure_presampled(tables[i], job, f0, &sum));
+            agree = agree && (!shared_sum || sum == shared_sum);
+            shared_sum = sum;
         }
         printf("\n");
     }
@@ -136,10 +197,10 @@ int main(int argc, char **argv) {
             return 1;
         job.records = (const float *)records;
         make_surfaces(f, surfaces, 0);
-        agree &= bench_scene("windows, diffuse", &job, records, soa, false);
-        agree &= bench_scene("windows and spheres, diffuse", &job, records, soa, true);
+        agree &= bench_scene("windows, diffuse", &job, records, soa, false, 0);
+        agree &= bench_scene("windows and spheres, diffuse", &job, records, soa, true, 0);
         make_surfaces(f, surfaces, 0.04f);
-        agree &= bench_scene("windows, glossy", &job, records, soa, false);
+        agree &= bench_scene("windows, glossy", &job, records, soa, false, 0.04f);
         free(records);
         free(soa);
     }

@@ -1,10 +1,10 @@
 /* Time of a frame by pass, the trace floor, and their ratio.
  *
- *   bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]     default: city street 1920 1080 4
+ *   bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES [VARIANT]]]]]     default: city street 1920 1080 4, all variants
  *
- * M = 32, k = 5, no sky, uniform candidates unless the name says lists (32 + 32). Wall seconds are the median over the
- * frames after the first (which has no history); pass times are thread seconds. The floor is traced after each frame
- * from the very rays of that frame. */
+ * VARIANT: only those whose name holds it. M = 32, k = 5, no sky, uniform candidates unless the name says another
+ * picker (lists: 32 + 32). Wall seconds are the median over the frames after the first (which has no history); pass
+ * times are thread seconds. The floor is traced after each frame from the very rays of that frame. */
 #include "bench_scene.h"
 #include "../tests/own_view.h"
 
@@ -24,6 +24,14 @@ static const variant variants[] = {
     { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true },
     { "restir mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, true, true, true },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true },
+    { "restir pairwise, influence", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true,
+      .candidates = NOC_CANDIDATES_INFLUENCE },
+    { "pairwise + rays, influence", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true,
+      .candidates = NOC_CANDIDATES_INFLUENCE },
+    { "restir pairwise, power", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true,
+      .candidates = NOC_CANDIDATES_POWER },
+    { "restir pairwise, light-bvh", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true,
+      .candidates = NOC_CANDIDATES_LIGHT_BVH },
     { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true,
       .candidates = NOC_CANDIDATES_LISTS },
@@ -61,11 +69,11 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
         double w = bench_median(wall, frames), f = bench_median(floor, frames), total = 0;
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             total += pass[k];
-        printf("%-24s %7.1f ms  floor %7.1f ms  ratio %4.2f  %5.1f M rays  %s |", v->name, 1e3 * w, 1e3 * f, w / f,
+        printf("%-26s %7.1f ms  floor %7.1f ms  ratio %4.2f  %5.1f M rays  %s |", v->name, 1e3 * w, 1e3 * f, w / f,
                1e-6 * (double)(stats.rays_primary + stats.rays_shadow), stats.path);
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             if (pass[k] > 0)
-                printf(" %s %.0f%%", noc_pass_name((noc_pass)k), 100 * pass[k] / total);
+                printf(" %s %.0f%% %.0f ms", noc_pass_name((noc_pass)k), 100 * pass[k] / total, 1e3 * pass[k]);
         printf("\n");
         fflush(stdout);
     }
@@ -77,8 +85,9 @@ int main(int argc, char **argv) {
     const char *spec = argc > 1 ? argv[1] : "city", *view = argc > 2 ? argv[2] : "street";
     int width = argc > 4 ? atoi(argv[3]) : 1920, height = argc > 4 ? atoi(argv[4]) : 1080;
     int frames = argc > 5 ? atoi(argv[5]) : 4;
+    const char *only = argc > 6 ? argv[6] : "";
     if (width < 1 || height < 1 || frames < 1 || frames > 64) {
-        fprintf(stderr, "usage: bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]\n");
+        fprintf(stderr, "usage: bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES [VARIANT]]]]]\n");
         return 2;
     }
     noc_log *log = bench_log();
@@ -98,7 +107,7 @@ int main(int argc, char **argv) {
     close_view(r);
     bool ok = true;
     for (size_t i = 0; ok && i < sizeof(variants) / sizeof(variants[0]); i++)
-        ok = measure(scene, &camera, &variants[i], width, height, frames);
+        ok = !strstr(variants[i].name, only) || measure(scene, &camera, &variants[i], width, height, frames);
     noc_scene_destroy(scene);
     noc_log_destroy(log);
     return ok ? 0 : 1;

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { LAYOUT_SOA, LAYOUT_RECORDS, LAYOUT_AHEAD, LAYOUT_COUNT };
+enum { LAYOUT_SOA, LAYOUT_RECORDS, LAYOUT_COUNT };
 
 typedef struct candidates_job {
     const float *records; /* 16 floats a light, 64-byte aligned */

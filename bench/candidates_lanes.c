@@ -53,7 +53,7 @@ FN light light_load(CTX u32 i) {
 }
 
 #include "../tests/core/no_profiles.h"
-#include "core/reservoir.h"
+#include "../tests/core/ris_uniform.h"
 
 static inline __attribute__((always_inline)) uint64_t run(const candidates_job *job, int layout) {
     struct core_context ctx = { job, layout };
@@ -73,8 +73,7 @@ static inline __attribute__((always_inline)) uint64_t run(const candidates_job *
         u32 lane;
         memcpy(&lane, pixel, sizeof(lane));
         u32 key = rng_key(KU(1u), lane, KU(0u));
-        reservoir r = layout == LAYOUT_AHEAD ? ris_uniform_ahead(&ctx, job->records, s, key, KU(job->lights), job->m)
-                                             : ris_uniform(&ctx, s, key, KU(job->lights), job->m);
+        reservoir r = ris_uniform(&ctx, s, key, KU(job->lights), job->m);
         uint32_t id[LANES], w[LANES];
         memcpy(id, &r.light, sizeof(id));
         memcpy(w, &r.w, sizeof(w));
@@ -85,7 +84,5 @@ static inline __attribute__((always_inline)) uint64_t run(const candidates_job *
 }
 
 uint64_t NAME(const candidates_job *job, int layout) {
-    if (layout == LAYOUT_SOA)
-        return run(job, LAYOUT_SOA);
-    return layout == LAYOUT_AHEAD ? run(job, LAYOUT_AHEAD) : run(job, LAYOUT_RECORDS);
+    return layout == LAYOUT_SOA ? run(job, LAYOUT_SOA) : run(job, LAYOUT_RECORDS);
 }

@@ -30,11 +30,6 @@ FN pick alias_draw(CTX u32 count, u32 bits, real xi) {
     return p;
 }
 
-/* Candidate i of the pixel with that key. */
-FN pick alias_candidate(CTX u32 count, u32 key, int i) {
-    return alias_draw(PASS count, rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))), rng(key, KU(DIM_PICK + U32(i))));
-}
-
 FN real alias_pmf(CTX u32 id) {
     real inverse = alias_load(PASS id).inverse;
     mask drawn = inverse > K(0.0f);

@@ -8,8 +8,7 @@
 
 FN pick pick_load(CTX int i);
 
-/* W = (1/m) sum(p_hat / pmf) / p_hat(chosen); draws that picked nothing count in m. Places and choices are those of
- * ris_uniform. */
+/* W = (1/m) sum(p_hat / pmf) / p_hat(chosen); draws that picked nothing count in m. */
 FN reservoir ris_given(CTX surf s, u32 key, int m) {
     reservoir_builder st = builder_empty();
     for (int i = 0; i < m; i++) {

@@ -85,28 +85,4 @@ FN reservoir builder_end(reservoir_builder s, real scale) {
     return r;
 }
 
-/* The light of candidate i. */
-FN u32 candidate_light(u32 key, u32 count, int i) {
-    return scale_u32(rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))), count);
-}
-
-/* Offers candidate i, a light that was picked uniformly. */
-FN reservoir_builder builder_candidate(CTX reservoir_builder st, surf s, u32 key, u32 id, int i) {
-    u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
-    u32 place = rng_bits(key, dim + KU(1u));
-    real u = unit_low(place);
-    real v = unit_high(place);
-    real p = target(PASS s, light_load(PASS id), u, v);
-    return builder_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
-}
-
-/* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf =
- * 1/count over (light) times 1 over the unit square. count > 0. */
-FN reservoir ris_uniform(CTX surf s, u32 key, u32 count, int m) {
-    reservoir_builder st = builder_empty();
-    for (int i = 0; i < m; i++)
-        st = builder_candidate(PASS st, s, key, candidate_light(key, count, i), i);
-    return builder_end(st, to_real(count) / K(F32(m)));
-}
-
 #endif

@@ -130,22 +130,4 @@ FN void light_prefetch(const float *records, u32 index) {
 
 #endif
 
-/* ris_uniform, to the bit, where memory is slower than arithmetic: lights are asked for RIS_AHEAD to 2 RIS_AHEAD
- * candidates before they are looked at. records: what light_load reads. */
-#define RIS_AHEAD 8
-FN reservoir ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, int m) {
-    reservoir_builder st = builder_empty();
-    u32 ids[2][RIS_AHEAD]; /* this batch and the next one */
-    for (int i = 0; i < m + RIS_AHEAD; i += RIS_AHEAD) {
-        for (int j = i; j < i + RIS_AHEAD && j < m; j++) {
-            u32 id = candidate_light(key, count, j);
-            light_prefetch(records, id);
-            ids[j / RIS_AHEAD & 1][j % RIS_AHEAD] = id;
-        }
-        for (int j = i - RIS_AHEAD; j >= 0 && j < i && j < m; j++)
-            st = builder_candidate(PASS st, s, key, ids[j / RIS_AHEAD & 1][j % RIS_AHEAD], j);
-    }
-    return builder_end(st, to_real(count) / K(F32(m)));
-}
-
 #endif

@@ -100,7 +100,44 @@ typedef struct trace {
     float p_at[3][MAX_NEIGHBOURS][BLOCK];
     uint32_t asked[3][MAX_NEIGHBOURS], visible[3], x[BLOCK], y[BLOCK];
     uint32_t front, entries[BLOCK], dropped;
+    neighbour fetched[8];
 } trace;
+
+/* A picture of one plane with holes, and what is fetched of it for a block of the plane: whole blocks, between blocks,
+ * over the picture's edges and beyond. */
+static void fetch_all(const kernels *k, const world *w, trace *t) {
+    enum { BLOCKS = 16 * 12 };
+    static gblock g[BLOCKS];
+    static rblock r[BLOCKS];
+    static const int at[8][2] = { { 8, 4 },   { 9, 4 },   { 8, 7 },   { 18, 21 },
+                                  { -2, -3 }, { 62, 45 }, { 61, 20 }, { -40, 8 } };
+    uint32_t before = state_;
+    for (int i = 0; i < BLOCKS; i++) {
+        random_surface(&g[i]);
+        random_reservoirs(&r[i]);
+        for (int l = 0; l < BLOCK; l++) {
+            g[i].pz[l] = 0;
+            g[i].nx[l] = g[i].ny[l] = 0;
+            g[i].nz[l] = g[i].material[l] == NO_SURFACE ? 0 : 1;
+            r[i].light[l] = (uint32_t)(i * BLOCK + l);
+        }
+    }
+    for (int i = 0; i < 8; i++) {
+        neighbour *n = &t->fetched[i];
+        k->neighbours(&w->ctx, g, r, &g[40], 0xfff7, at[i][0], at[i][1], n);
+        for (int l = 0; l < BLOCK; l++) {
+            int x = at[i][0] + (l & 3), y = at[i][1] + (l >> 2), from = y / 4 * 16 + x / 4,
+                lane = (y & 3) * 4 + (x & 3);
+            bool on = x >= 0 && y >= 0 && x < 64 && y < 48 && g[from].nz[lane] > 0 && g[40].nz[l] > 0 && l != 3;
+            assert_int_equal(n->lanes >> l & 1, on);
+            if (on)
+                assert_true(n->r.light[l] == (uint32_t)(from * BLOCK + lane) && n->g.px[l] == g[from].px[lane]);
+            else if (n->lanes)
+                assert_true(n->r.w[l] == 0 && n->r.m[l] == 0);
+        }
+    }
+    state_ = before;
+}
 
 static void shade_reference(const kernels *k, const world *w, const gblock *g, trace *t) {
     static float sums[LIGHTS / REFERENCE_CHUNK + 1][BLOCK], weight[1024][BLOCK];
@@ -143,7 +180,13 @@ static void run_all(const kernels *k, world *w, combining *b, trace *t) {
     const gblock *g = b->g;
     const rblock *own = b->own;
     memset(t, 0, sizeof(*t));
-    k->candidates(&w->ctx, g, 0xbeef, 4, 8, 13, &t->candidates);
+    static presample_row samples[2 * 13];
+    static presample_pick1 drawn[13 * BLOCK];
+    static float weighed[13][BLOCK];
+    for (uint32_t i = 0; i < 2; i++)
+        k->presample(&w->ctx, i, 13, false, drawn, samples + (size_t)13 * i);
+    k->presampled(&w->ctx, g, 0xbeef, 4, 8, 13, samples, 2, weighed, &t->candidates);
+    fetch_all(k, w, t);
     t->front = k->history_places(&w->ctx, g, t->x, t->y);
     k->segments(&w->ctx, g, own->light, own->u, own->v, &t->segments);
     combine_all(k, w, b, t);

@@ -91,6 +91,7 @@ FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 #include "core/influence_find.h"
 #include "core/learned_cells.h"
 #include "core/tree.h"
+#include "ris_uniform.h"
 
 FN surf any_surf(u32 key) {
     surf s;
@@ -353,7 +354,7 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
 
 /* Slots 170 to 178. */
 FN void picked(CTX u32 item, u32 key, surf s) {
-    pick a = alias_candidate(PASS KU(KERNEL_LIGHTS), key, 5);
+    pick a = alias_draw(PASS KU(KERNEL_LIGHTS), rng_bits(key, KU(3102u)), rng(key, KU(3103u)));
     put_u32(PASS item, 170, a.light);
     put_real(PASS item, 171, a.inverse);
     u32 bits = rng_bits(key, KU(3100u));
@@ -372,6 +373,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 #include "dialect_influence.h"
 #include "dialect_learned.h"
 #include "dialect_lists.h"
+#include "dialect_presampled.h"
 #include "dialect_textures.h"
 
 FN void dialect_item(CTX u32 item) {
@@ -392,6 +394,7 @@ FN void dialect_item(CTX u32 item) {
     frame_item(PASS item, key, s);
     influence_draws(PASS item, key, s);
     lists_item(PASS item, key, s);
+    presampling(PASS item, key, s);
     textures(PASS item, key);
 }
 

@@ -13,7 +13,9 @@
 #define LISTS_SLOTS 101 /* dialect_lists.h */
 #define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
-#define ITEM_SLOTS (TEXTURES_FIRST + TEXTURES_SLOTS)
+#define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
+#define PRESAMPLED_SLOTS 28 /* dialect_presampled.h */
+#define ITEM_SLOTS (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
 #define TILE_WORDS 3040 /* of memory for a tile */
 
 #endif

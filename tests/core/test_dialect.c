@@ -83,7 +83,7 @@ static const struct {
     { 155, "parallelogram, close" },
     { 162, "turn_of" },
     { 163, "spot" },
-    { 170, "alias_candidate" },
+    { 170, "alias_draw, other numbers" },
     { 172, "tree_go" },
     { 177, "tree_draw" },
     { FRAME_FIRST, "neighbour_key" },
@@ -188,6 +188,15 @@ static const struct {
     { TEXTURES_FIRST + 12, "whole_under" },
     { TEXTURES_FIRST + 13, "image_wrap" },
     { TEXTURES_FIRST + 16, "texels_at" },
+    { PRESAMPLED_FIRST, "presample_of" },
+    { PRESAMPLED_FIRST + 13, "presample_look" },
+    { PRESAMPLED_FIRST + 15, "presample_key, presample_subsets" },
+    { PRESAMPLED_FIRST + 16, "presample_bits" },
+    { PRESAMPLED_FIRST + 17, "presample_choice" },
+    { PRESAMPLED_FIRST + 18, "presample_place" },
+    { PRESAMPLED_FIRST + 19, "presample_turned" },
+    { PRESAMPLED_FIRST + 20, "presample_plain" },
+    { PRESAMPLED_FIRST + 21, "ris_presampled" },
 };
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
@@ -204,7 +213,9 @@ static bool holds_integers(int slot) {
     return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103 ||
            slot == 126 || slot == 129 || slot == 134 || slot == 135 || slot == 170 || (slot >= 172 && slot <= 174) ||
            slot == 177 || slot == TEXTURES_FIRST + 7 || slot == TEXTURES_FIRST + 16 || slot == INFLUENCE_FIRST ||
-           slot == INFLUENCE_FIRST + 2 || (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
+           slot == PRESAMPLED_FIRST + 15 || slot == PRESAMPLED_FIRST + 16 || slot == PRESAMPLED_FIRST + 18 ||
+           slot == PRESAMPLED_FIRST + 19 || slot == PRESAMPLED_FIRST + 21 || slot == INFLUENCE_FIRST + 2 ||
+           (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
 }
 
 static const char *group_name(int slot) {
@@ -280,8 +291,8 @@ static void test_kernel_is_alive(void **state) {
             bad += !holds_integers(slot) && !isfinite(as_float(out[at]));
         }
         /* 8: z of circle; the others: M */
-        bool constant =
-            slot == 8 || slot == 75 || slot == 81 || slot == 87 || slot == 93 || slot == 139 || slot == LISTS_FIRST + 6;
+        bool constant = slot == 8 || slot == 75 || slot == 81 || slot == 87 || slot == 93 || slot == 139 ||
+                        slot == LISTS_FIRST + 6 || slot == PRESAMPLED_FIRST + 25;
         if (!constant && equal == ITEMS)
             fail_msg("slot %d (%s) is constant", slot, group_name(slot));
         if (bad)

@@ -1,7 +1,6 @@
 /* core/reservoir.h and core/reuse.h: resampling is unbiased where docs/estimator.md says so, and the tests can tell. */
 #include "core_test.h"
 #include "core/light.h"
-#include "core/wide_load.h"
 #include "no_profiles.h"
 
 enum { LIGHTS = 40 };
@@ -11,6 +10,7 @@ struct core_context {
 FN light light_load(CTX u32 i) { return ctx->lights[i]; }
 
 #include "core/reuse.h"
+#include "ris_uniform.h"
 
 /* ---- candidates: a street's worth of lights of all kinds over a glossy surface ---- */
 
@@ -119,19 +119,6 @@ static void test_ris_of_one_light_and_of_none_that_shines(void **state) {
     s.wo.z = -s.wo.z;
     reservoir r = ris_uniform(&ctx, s, rng_key(1, 1, 0), LIGHTS, 32);
     assert_true(r.w == 0 && r.m == 32);
-}
-
-/* The prefetching loop gives the same reservoir, to the bit, for any number of candidates. */
-static void test_prefetching_changes_nothing(void **state) {
-    _Alignas(64) struct core_context ctx;
-    make_lights(&ctx);
-    surf s = make_surface();
-    for (int m = 1; m < 40; m++)
-        for (uint32_t i = 0; i < 50; i++) {
-            reservoir a = ris_uniform(&ctx, s, rng_key(1, i, 2), LIGHTS, m);
-            reservoir b = ris_uniform_ahead(&ctx, (const float *)ctx.lights, s, rng_key(1, i, 2), LIGHTS, m);
-            assert_memory_equal(&a, &b, sizeof(a));
-        }
 }
 
 /* Samples are held in proportion to their weights; those of weight 0 never. */
@@ -342,7 +329,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ris_is_unbiased),
         cmocka_unit_test(test_ris_of_one_light_and_of_none_that_shines),
-        cmocka_unit_test(test_prefetching_changes_nothing),
         cmocka_unit_test(test_stream_is_proportional),
         cmocka_unit_test(test_nothing_odd_comes_out),
         cmocka_unit_test(test_reuse_without_shadows),

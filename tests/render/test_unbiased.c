@@ -185,7 +185,7 @@ static noc_scene *gap(void) {
 }
 
 static const config unbiased[] = {
-    { "is", NOC_METHOD_IS },
+    { "is", NOC_METHOD_IS, .times = 16 },
     { "ris", NOC_METHOD_RIS, .reuse = true },
     { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER, .times = 4 },
     { "ris, influence", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE, .times = 4 },

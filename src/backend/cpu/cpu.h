@@ -66,13 +66,18 @@ typedef struct list_pass { /* lists: the list of the tile at work and the rays o
     NOC_ARRAY(noc_observation) observations;
 } list_pass;
 
-typedef struct pick_pass { /* power, influence, light-bvh */
+typedef struct pick_pass { /* influence, light-bvh */
     pick_block drawn;
     tree_items items[2]; /* light-bvh */
     noc_found found;     /* influence: by the tile at work */
     /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
     uint64_t *found_counts;
 } pick_pass;
+
+typedef struct share_pass { /* uniform, power: of the block, or of the subset at work */
+    ALIGNED float weighed[MOST_DRAWS][BLOCK];
+    presample_pick1 drawn[MOST_DRAWS * BLOCK];
+} share_pass;
 
 /* Rays that are kept to be traced again. */
 typedef struct recorder {
@@ -89,6 +94,7 @@ typedef struct worker {
     ray_batch batch; /* of the pass at work */
     list_pass *lists;
     pick_pass *picks;
+    share_pass *shares;
     combining *combining; /* reuse: of a tile's blocks */
     reference_scratch *reference;
     recorder record;
@@ -198,6 +204,8 @@ typedef struct cpu_view {
     bool past_filled;        /* previous_lights is of that frame */
     bool past_lost;          /* the frame before saw another scene, of which something is not known any more */
     size_t chunks;           /* of lights, that the reference has room for */
+    presample_row *samples;  /* that the blocks of a frame share: [PRESAMPLES / 16]; NULL: never asked for */
+    uint32_t subsets;
     worker *workers;
     int worker_count;
     bool recording;
@@ -266,6 +274,8 @@ void noc_cpu_free_scratch(cpu_view *s);
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p);
 void noc_cpu_release_lights(cpu_view *s);
 void noc_cpu_forget_found(cpu_view *s); /* of the last frame, before candidates are drawn */
+/* The candidates that a frame's blocks share, where its plan has such, drawn by all threads. */
+void noc_cpu_presample(stage_run *run);
 /* moved.c: what the frame before saw of a scene that is edited */
 /* Before a frame: room for the lights of the previous one, where reservoirs of it will be reused with these parameters,
  * and whether they can be. */

@@ -87,6 +87,8 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
         return NOC_ERR_CANCELLED;
     for (int i = 0; i < s->worker_count; i++)
         s->workers[i].no_memory = false;
+    if (st == &frame->plan->stages[0])
+        noc_cpu_presample(&run);
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     for (int i = 0; i < s->worker_count; i++)
         if (s->workers[i].no_memory)

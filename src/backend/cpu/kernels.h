@@ -30,6 +30,20 @@ typedef struct pick_block {
     float (*inverse)[BLOCK]; /* 1 / pmf; 0: nothing was picked */
 } pick_block;
 
+/* 16 of the samples that blocks share, candidates of the same number of a block's pixels: core/presampled.h. */
+enum { MOST_DRAWS = 1024 };
+typedef struct presample_row {
+    ALIGNED float x[3][BLOCK];
+    float normal[3][BLOCK], shine[3][BLOCK], bare[BLOCK], sided[BLOCK], close2[BLOCK], radius[BLOCK];
+    float inverse[BLOCK];
+    uint32_t light[BLOCK], place[BLOCK];
+} presample_row;
+/* One of them. */
+typedef struct presample_pick1 {
+    uint32_t light, place;
+    float inverse;
+} presample_pick1;
+
 /* Pixels on their way down a light tree: backend/cpu/tree_draws_tmpl.h. One array a field, TREE_ITEMS each. */
 typedef struct tree_items {
     uint32_t count;
@@ -47,8 +61,10 @@ typedef struct core_cursors {
     const struct priors *priors;
     struct list_asked *asked; /* of the block */
     const struct ray_draw *found;
-    noc_found *volumes;      /* of the tile: what its points find among influence volumes */
-    const pick_block *picks; /* of the block */
+    noc_found *volumes;           /* of the tile: what its points find among influence volumes */
+    const pick_block *picks;      /* of the block */
+    const presample_row *samples; /* of the block: its subset */
+    float (*weighed)[BLOCK];      /* and sums of their weights */
     const struct combining *combining;
     struct reference_scratch *reference;
     int lane; /* blocks are read from this one on */
@@ -178,9 +194,13 @@ typedef struct kernels {
     /* Albedos of `lanes`, from their materials and the textures of these. */
     void (*texels)(const struct core_context *ctx, const cornerblock *c, const imageblock *image, uint32_t lanes,
                    gblock *g);
-    /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
-    void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                       rblock *out);
+    /* A subset of the candidates that blocks share: m rows, of all lights alike or by power. scratch: 16 m. */
+    void (*presample)(const struct core_context *ctx, uint32_t subset, int m, bool by_power, presample_pick1 *scratch,
+                      presample_row *out);
+    /* m of them a lane of `lanes`, of one of so many subsets; w = m = 0 elsewhere. x, y: pixel of lane 0. scratch: m.
+     */
+    void (*presampled)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                       const presample_row *samples, uint32_t subsets, float (*scratch)[BLOCK], rblock *out);
     /* The list of a tile of `blocks` blocks into scratch->list: core/list_build.h. Then candidates from ctx->lists. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *scratch);
@@ -199,7 +219,6 @@ typedef struct kernels {
                       uint32_t ray[BLOCK], float w[BLOCK]);
     void (*list_mix)(const struct core_context *ctx, const float m[BLOCK], float reused[BLOCK]);
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
-    void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
     /* What the surfaces of n blocks, a tile, find among the influence volumes; then m candidates for the lanes of one
@@ -212,6 +231,11 @@ typedef struct kernels {
                   const pick_block *picks, rblock *out);
     /* The pixels of the previous picture that saw this frame's surfaces; returns the lanes that have one. */
     uint32_t (*history_places)(const struct core_context *ctx, const gblock *g, uint32_t x[BLOCK], uint32_t y[BLOCK]);
+    /* The 4x4 pixels from (x, y) on, which may lie outside the picture, as neighbours of the pixels of `here`: those of
+     * the lanes `wanted` that are inside and on a surface like theirs. g, r: the picture's. n->g is left without its
+     * depth and light, and all of n but `lanes` where that is 0. */
+    void (*neighbours)(const struct core_context *ctx, const gblock *g, const rblock *r, const gblock *here,
+                       uint32_t wanted, int x, int y, neighbour *n);
     /* Segments from g to the samples. */
     void (*segments)(const struct core_context *ctx, const gblock *g, const uint32_t *light, const float *u,
                      const float *v, rayblock *out);

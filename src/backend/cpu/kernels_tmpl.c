@@ -5,21 +5,6 @@
 #include "core/hit.h"
 #include "core/shading.h"
 
-static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                       rblock *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        mask on = mload(lanes, l);
-        reservoir r = reservoir_empty();
-        if (ctx->light_count && ANY(on))
-            r = reservoir_sel(on,
-                              ris_uniform_ahead(ctx, (const float *)ctx->lights,
-                                                surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
-                                                KU(ctx->light_count), m),
-                              r);
-        reservoir_store(out, l, r);
-    }
-}
-
 FN v3 corner_load(const cornerblock *c, int corner, int l) {
     return V3(rload(c->at[corner][0] + l), rload(c->at[corner][1] + l), rload(c->at[corner][2] + l));
 }
@@ -155,6 +140,7 @@ static void headlight(const struct core_context *ctx, const gblock *g, uint32_t 
 #include "backend/cpu/reuse_tmpl.h"
 #include "backend/cpu/lists_tmpl.h"
 #include "backend/cpu/picks_tmpl.h"
+#include "backend/cpu/presampled_tmpl.h"
 #include "backend/cpu/influence_tmpl.h"
 #include "backend/cpu/reference_tmpl.h"
 
@@ -162,7 +148,8 @@ const kernels KERNELS = {
     .name = KERNELS_NAME,
     .hits = hits,
     .texels = texels,
-    .candidates = candidates,
+    .presample = presample_lights,
+    .presampled = presampled,
     .list_build = build_list,
     .list_candidates = list_candidates,
     .list_fill = fill_list,
@@ -171,12 +158,12 @@ const kernels KERNELS = {
     .list_show = list_show,
     .list_keep = list_keep,
     .list_mix = list_mix,
-    .pick_power = pick_power,
     .pick_tree = pick_tree,
     .influence_find = find_influence,
     .pick_influence = pick_influence,
     .given = given,
     .history_places = history_places,
+    .neighbours = fetch_neighbours,
     .segments = segments,
     .reuse_begin = combine_begin,
     .reuse_ask = combine_ask,

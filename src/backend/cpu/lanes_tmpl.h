@@ -125,6 +125,23 @@ FN real material_field(const noc_material_record *base, u32 index, int field) {
 #endif
 }
 
+/* What surfaces are made of. Most blocks see one material, which then is loaded once. */
+typedef struct material_lanes {
+    v3 albedo;
+    real f0, alpha;
+} material_lanes;
+FN material_lanes materials_load(const noc_material_record *base, u32 index) {
+    uint32_t at[LANES];
+    ustore(at, index);
+    if (!ANY(index != KU(at[0]))) {
+        const noc_material_record *m = base + at[0];
+        return (material_lanes){ V3(K(m->albedo[0]), K(m->albedo[1]), K(m->albedo[2])), K(m->f0), K(m->alpha) };
+    }
+    return (material_lanes){ V3(material_field(base, index, 0), material_field(base, index, 1),
+                                material_field(base, index, 2)),
+                             material_field(base, index, 3), material_field(base, index, 7) };
+}
+
 FN u32 texel_load(CTX u32 place) {
 #if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
     return (u32)_mm512_i32gather_epi32((__m512i)place, (const int *)ctx->texels, 4);
@@ -168,16 +185,16 @@ FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
     s.wo = mul3(d, K(1.0f) / sqrt_(max_(dot3(d, d), K(1e-20f))));
     u32 m = uload(g->material + l);
     m = selu(m == KU(NO_SURFACE), KU(0u), m);
-    s.albedo = V3(material_field(ctx->materials, m, 0), material_field(ctx->materials, m, 1),
-                  material_field(ctx->materials, m, 2));
+    material_lanes of = materials_load(ctx->materials, m);
+    s.albedo = of.albedo;
     if (ctx->texels) {
         u32 texel = uload(g->texel + l);
         mask there = texel != KU(0u);
         if (ANY(there))
             s.albedo = sel3(there, texel_albedo(texel), s.albedo);
     }
-    s.f0 = ctx->frame->flags & FRAME_MATTE ? K(0.0f) : material_field(ctx->materials, m, 3);
-    s.alpha = material_field(ctx->materials, m, 7);
+    s.f0 = ctx->frame->flags & FRAME_MATTE ? K(0.0f) : of.f0;
+    s.alpha = of.alpha;
     return s;
 }
 

@@ -2,6 +2,7 @@
 #include "backend/cpu/cpu.h"
 
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/presample_limits.h"
 #include "core/shading.h"
 
 int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]) {
@@ -152,12 +153,32 @@ static void build_list(stage_run *run, worker *w, tile t) {
     run->k->list_build(&run->ctx, points.g, points.lanes, points.count, start_of_tail(run, t), &w->lists->build);
 }
 
-static void candidates_uniform(stage_run *run, worker *w, tile t) {
+static void presample(void *arg, size_t subset, int index) {
+    stage_run *run = arg;
+    worker *w = &run->s->workers[index];
     int m = run->frame->plan->candidate_count;
+    bool by_power = run->frame->plan->candidates == NOC_CANDIDATES_POWER;
+    double start = noc_wall_seconds();
+    run->k->presample(&run->ctx, (uint32_t)subset, m, by_power, w->shares->drawn, run->s->samples + subset * (size_t)m);
+    w->seconds[by_power ? NOC_PASS_CANDIDATES_POWER : NOC_PASS_CANDIDATES_UNIFORM] += noc_wall_seconds() - start;
+}
+
+void noc_cpu_presample(stage_run *run) {
+    const noc_plan *plan = run->frame->plan;
+    const frame_buffers *b = &run->s->b;
+    bool shared = plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER;
+    if (!plan->draws || !shared || !run->ctx.light_count)
+        return;
+    run->s->subsets = presample_subsets((uint32_t)plan->candidate_count, (uint32_t)(b->blocks_x * b->blocks_y));
+    noc_pool_run(run->s->pool, run->s->subsets, presample, run);
+}
+
+static void candidates_shared(stage_run *run, worker *w, tile t) {
     tile_points p;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
-        run->k->candidates(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, target_block(run, p.block[i]));
+        run->k->presampled(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, run->frame->plan->candidate_count,
+                           run->s->samples, run->s->subsets, w->shares->weighed, target_block(run, p.block[i]));
         end_candidates(run, w, &p, i);
     }
 }
@@ -175,10 +196,6 @@ static void candidates_list(stage_run *run, worker *w, tile t) {
 
 /* Candidates that a picker draws for a block, then weighs. */
 typedef void draw_fn(const stage_run *run, worker *w, const tile_points *p, int i, int m);
-
-static void draw_power(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_power(&run->ctx, p->block[i].x, p->block[i].y, m, &w->picks->drawn);
-}
 
 static void draw_influence(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
     run->k->pick_influence(&run->ctx, &w->picks->found, i, p->block[i].x, p->block[i].y, m, &w->picks->drawn);
@@ -202,7 +219,6 @@ static void draw_candidates(stage_run *run, worker *w, tile t, draw_fn *draw) {
     }
 }
 
-static void candidates_power(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_power); }
 static void candidates_influence(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_influence); }
 static void candidates_light_bvh(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_light_bvh); }
 
@@ -407,9 +423,9 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         [NOC_PASS_PRIMARY] = primary,
         [NOC_PASS_FIND_LIGHTS] = find_lights,
         [NOC_PASS_BUILD_LIST] = build_list,
-        [NOC_PASS_CANDIDATES_UNIFORM] = candidates_uniform,
+        [NOC_PASS_CANDIDATES_UNIFORM] = candidates_shared,
         [NOC_PASS_CANDIDATES_LIST] = candidates_list,
-        [NOC_PASS_CANDIDATES_POWER] = candidates_power,
+        [NOC_PASS_CANDIDATES_POWER] = candidates_shared,
         [NOC_PASS_CANDIDATES_INFLUENCE] = candidates_influence,
         [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_light_bvh,
         [NOC_PASS_SHARE_RAYS] = share_rays,

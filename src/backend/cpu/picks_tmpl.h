@@ -16,19 +16,6 @@ FN pick pick_load(CTX int i) {
     return p;
 }
 
-static void pick_power(const struct core_context *ctx, int x, int y, int m, pick_block *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l);
-        for (int i = 0; i < m; i++) {
-            pick p = { KU(0u), K(0.0f) };
-            if (ctx->alias->count)
-                p = alias_candidate(ctx, KU(ctx->alias->count), key, i);
-            ustore(out->light[i] + l, p.light);
-            rstore(out->inverse[i] + l, p.inverse);
-        }
-    }
-}
-
 #include "backend/cpu/tree_draws_tmpl.h"
 
 static void given(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,

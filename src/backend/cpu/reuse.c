@@ -80,15 +80,27 @@ static bool fetch_history(const stage_run *run, combining *c) {
     gblock moved;
     const gblock *g = noc_cpu_taken_back(run->s, c->at, c->g, &moved);
     uint32_t x[BLOCK], y[BLOCK], places = run->k->history_places(&run->ctx, g, x, y);
+    if (!places)
+        return false;
+    const gblock *from = b->g[1 - run->frame->gbuffer];
+    const rblock *r = b->r[run->stage->source];
     neighbour *n = c->n;
-    clear(n);
-    for (int l = 0; l < BLOCK; l++) {
-        if (!(places >> l & 1))
-            continue;
-        fetch_alike(run, b->g[1 - run->frame->gbuffer], b->r[run->stage->source], receiver_load(g, l),
-                    (pixel){ x[l], y[l], true }, l, n);
-        n->r.m[l] = reservoir_cap(reservoir_load(&n->r, l), run->ctx.frame->m_max).m;
+    int first = __builtin_ctz(places), dx = (int)x[first] - (first & 3), dy = (int)y[first] - (first >> 2);
+    bool together = true;
+    for (int l = 0; l < BLOCK; l++)
+        together =
+            together && (!(places >> l & 1) || (x[l] == (uint32_t)(dx + (l & 3)) && y[l] == (uint32_t)(dy + (l >> 2))));
+    if (together) {
+        run->k->neighbours(&run->ctx, from, r, g, places, dx, dy, n);
+    } else {
+        clear(n);
+        for (uint32_t bits = places; bits; bits &= bits - 1) {
+            int l = __builtin_ctz(bits);
+            fetch_alike(run, from, r, receiver_load(g, l), (pixel){ x[l], y[l], true }, l, n);
+        }
     }
+    for (int l = 0; l < BLOCK; l++)
+        n->r.m[l] = min_(n->r.m[l], run->ctx.frame->m_max);
     c->k = 1;
     return n->lanes != 0;
 }
@@ -128,12 +140,7 @@ static void fetch_neighbours(const stage_run *run, combining *c) {
     for (uint32_t i = 0; surfaces && i < run->ctx.frame->neighbours; i++) {
         neighbour *n = &c->n[c->k];
         v3 offset = neighbour_offset(&run->ctx, key, c->dim + 3u * i);
-        clear(n);
-        for (int l = 0; l < BLOCK; l++) {
-            pixel p = neighbour_place(&run->ctx, (uint32_t)(c->x + (l & 3)), (uint32_t)(c->y + (l >> 2)), offset);
-            if (surfaces >> l & 1 && p.inside)
-                fetch_alike(run, g, r, receiver_load(c->g, l), p, l, n);
-        }
+        run->k->neighbours(&run->ctx, g, r, c->g, surfaces, c->x + (int)offset.x, c->y + (int)offset.y, n);
         c->k += n->lanes != 0;
     }
 }

@@ -1,7 +1,8 @@
 /* Scratch of passes, one a thread: made when a plan first has a pass that wants it, and kept with the view. */
 #include "backend/cpu/cpu.h"
+#include "core/presample_limits.h"
 
-enum { MAX_DRAWS = 1024 + PICK_AHEAD, MAX_RAYS = 1024 };
+enum { MAX_DRAWS = MOST_DRAWS + PICK_AHEAD, MAX_RAYS = 1024 };
 
 static bool has(const noc_plan *plan, noc_pass pass) {
     for (int i = 0; i < plan->count; i++)
@@ -52,14 +53,17 @@ noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan) {
     uint32_t bins = (uint32_t)NOC_MIN(lights, (size_t)FOUND_MOST) + 1;
     bool lists = plan->draws && plan->candidates == NOC_CANDIDATES_LISTS;
     bool found = has(plan, NOC_PASS_FIND_LIGHTS), items = has(plan, NOC_PASS_CANDIDATES_LIGHT_BVH);
-    bool draws = found || items || has(plan, NOC_PASS_CANDIDATES_POWER), all = has(plan, NOC_PASS_SHADE_ALL);
-    bool reuse = has(plan, NOC_PASS_TEMPORAL) || has(plan, NOC_PASS_SPATIAL), ok = true;
+    bool draws = found || items, all = has(plan, NOC_PASS_SHADE_ALL);
+    bool shared = has(plan, NOC_PASS_CANDIDATES_UNIFORM) || has(plan, NOC_PASS_CANDIDATES_POWER);
+    bool reuse = has(plan, NOC_PASS_TEMPORAL) || has(plan, NOC_PASS_SPATIAL), ok;
     bool more_bins = found && bins > s->found_bins, more_chunks = all && chunks > s->chunks;
     s->found_bins = more_bins ? bins : s->found_bins;
     s->chunks = more_chunks ? chunks : s->chunks;
+    ok = !shared || MAKE(s->samples, PRESAMPLES / BLOCK);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         ok = ok && (!lists || make_lists(w)) && (!draws || make_draws(w)) && (!items || make_items(w));
+        ok = ok && (!shared || MAKE(w->shares, 1));
         ok = ok && (!reuse || MAKE(w->combining, TILE_BLOCKS * TILE_BLOCKS));
         /* what grows goes first, for every thread: none is left with less than the others */
         bool counts = !found || !w->picks || make_counts(w, s->found_bins, more_bins);
@@ -91,6 +95,7 @@ void noc_cpu_free_scratch(cpu_view *s) {
         worker *w = &s->workers[i];
         free_picks(w->picks);
         free(w->lists); /* its observations went with the tiles */
+        free(w->shares);
         free(w->combining);
         if (w->reference) {
             free(w->reference->sums);
@@ -100,6 +105,8 @@ void noc_cpu_free_scratch(cpu_view *s) {
         free(w->reference);
         free(w->record.packets);
     }
+    free(s->samples);
+    s->samples = NULL;
     free(s->workers);
     s->workers = NULL;
     s->worker_count = 0;

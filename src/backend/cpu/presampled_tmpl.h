@@ -1,0 +1,109 @@
+/* Candidates that blocks share (core/presampled.h), included by kernels_tmpl.c: subsets are filled before a frame, the
+ * pixels of each block then choose among those of one. */
+#ifndef NOC_CPU_PRESAMPLED_H
+#define NOC_CPU_PRESAMPLED_H
+
+#include "core/presampled.h"
+
+FN presample presample_load(CTX int i) {
+    const presample_row *p = &ctx->at.samples[i];
+    int l = ctx->at.lane;
+    return (presample){ V3(rload(p->x[0] + l), rload(p->x[1] + l), rload(p->x[2] + l)),
+                        V3(rload(p->normal[0] + l), rload(p->normal[1] + l), rload(p->normal[2] + l)),
+                        V3(rload(p->shine[0] + l), rload(p->shine[1] + l), rload(p->shine[2] + l)),
+                        rload(p->bare + l),
+                        rload(p->sided + l),
+                        rload(p->close2 + l),
+                        rload(p->radius + l) };
+}
+FN real presample_inverse(CTX int i) { return rload(ctx->at.samples[i].inverse + ctx->at.lane); }
+FN presample_pick presample_pick_load(CTX u32 i) {
+    const presample_row *p = ctx->at.samples;
+    u32 at = i * KU((uint32_t)(sizeof(*p) / 4)) + KU((uint32_t)ctx->at.lane) + lane_numbers(0);
+    return (presample_pick){ word_gather(p->light, at), word_gather(p->place, at), real_gather(p->inverse, at) };
+}
+FN void weighed_store(CTX int i, real sum) { rstore(ctx->at.weighed[i] + ctx->at.lane, sum); }
+FN real weighed_load(CTX int i) { return rload(ctx->at.weighed[i] + ctx->at.lane); }
+FN real weighed_at(CTX u32 i) {
+    return real_gather(ctx->at.weighed[0] + ctx->at.lane, i * KU(BLOCK) + lane_numbers(0));
+}
+
+/* Samples whose target is always asked go last, so that they are candidates of the same numbers. */
+static void part_samples(const struct core_context *ctx, u1 key, const presample_pick1 *drawn, uint32_t n,
+                         presample_row *out) {
+    uint32_t to = 0;
+    for (int last = 0; last < 2; last++)
+        for (uint32_t i = 0; i < n; i++) {
+            const light_record *l = &ctx->lights[drawn[i].light];
+            if ((l->kind == LIGHT_SPOT || l->flags & LIGHT_PROFILE_BITS) != last)
+                continue;
+            uint32_t at = presample_turned(key, to++);
+            out[at / BLOCK].light[at % BLOCK] = drawn[i].light;
+            out[at / BLOCK].place[at % BLOCK] = drawn[i].place;
+            out[at / BLOCK].inverse[at % BLOCK] = drawn[i].inverse;
+        }
+}
+
+/* What surfaces look at. */
+static void brief_samples(const struct core_context *ctx, presample_row *p) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        u32 place = uload(p->place + l);
+        presample e = presample_of(light_load(ctx, uload(p->light + l)), unit_low(place), unit_high(place));
+        const v3 three[3] = { e.x, e.normal, e.shine };
+        float(*const to[3])[BLOCK] = { p->x, p->normal, p->shine };
+        for (int k = 0; k < 3; k++) {
+            rstore(to[k][0] + l, three[k].x);
+            rstore(to[k][1] + l, three[k].y);
+            rstore(to[k][2] + l, three[k].z);
+        }
+        rstore(p->bare + l, e.bare);
+        rstore(p->sided + l, e.sided);
+        rstore(p->close2 + l, e.close2);
+        rstore(p->radius + l, e.radius);
+    }
+}
+
+static void presample_lights(const struct core_context *ctx, uint32_t subset, int m, bool by_power,
+                             presample_pick1 *scratch, presample_row *out) {
+    u1 key = presample_key(ctx->frame->seed, subset, ctx->frame->index, 0), n = (u1)m * BLOCK;
+    for (uint32_t first = 0; first < n; first += LANES) {
+        u32 i = KU(first) + lane_numbers(0), bits = presample_bits(key, i, n), place = presample_place(key, i);
+        pick p = { scale_u32(bits, KU(ctx->light_count)), K((float)ctx->light_count) };
+        if (by_power)
+            p = ctx->alias->count ? alias_draw(ctx, KU(ctx->alias->count), bits, presample_choice(key, i))
+                                  : (pick){ KU(0u), K(0.0f) };
+        light_prefetch((const float *)ctx->lights, p.light);
+        uint32_t id[LANES], where[LANES];
+        float inverse[LANES];
+        ustore(id, p.light);
+        ustore(where, place);
+        rstore(inverse, p.inverse);
+        for (int l = 0; l < LANES; l++)
+            scratch[first + (uint32_t)l] = (presample_pick1){ id[l], where[l], inverse[l] };
+    }
+    part_samples(ctx, key, scratch, n, out);
+    for (int i = 0; i < m; i++)
+        brief_samples(ctx, &out[i]);
+}
+
+static void presampled(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,
+                       const presample_row *samples, uint32_t subsets, float (*weighed)[BLOCK], rblock *out) {
+    struct core_context c = *frame, *ctx = &c;
+    uint32_t block = (uint32_t)(y / BLOCK_SIDE) * ctx->frame->blocks_x + (uint32_t)(x / BLOCK_SIDE);
+    u1 key = presample_key(ctx->frame->seed, block, ctx->frame->index, 1);
+    c.at.samples = samples + (size_t)m * ((uint64_t)key * subsets >> 32);
+    c.at.weighed = weighed;
+    for (int l = 0; l < BLOCK; l += LANES) {
+        mask on = mload(lanes, l);
+        reservoir r = reservoir_empty();
+        c.at.lane = l;
+        if (ANY(on))
+            r = reservoir_sel(on,
+                              ris_presampled(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye),
+                                             rng(key_of(ctx, x, y, l), KU(DIM_CANDIDATE)), m),
+                              r);
+        reservoir_store(out, l, r);
+    }
+}
+
+#endif
