@@ -104,6 +104,8 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
     const noc_plan *p = run->frame->plan;
     if (p->candidates == NOC_CANDIDATES_UNIFORM)
         return (float)p->candidate_count / (float)run->ctx.light_count;
+    if (p->candidates == NOC_CANDIDATES_POWER)
+        return (float)p->candidate_count / run->ctx.alias->slots[light].inverse;
     if (p->candidates == NOC_CANDIDATES_LISTS) {
         const light_list *list = &w->lists->build.list;
         for (uint32_t i = 0; i < list->count; i++)
