@@ -107,8 +107,7 @@ static void share_tile(cpu_view *e, const struct core_context *frame, const gblo
     e->kernels->list_fill(&ctx);
     for (uint32_t i = 0; i < list->count; i++) {
         list_prior b = list_prior_of(list->weight[i], LEARNED_UNKNOWN);
-        of->share[i] = b.share;
-        of->expect[i] = b.expect;
+        set_prior(of, (list->count + 15) / 16, i, b.share, b.expect);
     }
     for (int i = 0; i < blocks; i++)
         if (lanes[i] && list->count)

@@ -16,8 +16,8 @@
  * three floats. On them if, while, ternary-free expressions with && and || are allowed, and literals are plain. K(f1),
  * KU(u1) and spread3(f3) spread them over the lanes. FN1 marks functions of such values only, CALL those that are so
  * long that they stay calls. What is looked at 16 at a time is walked by EACH16(l), which gives the first of LANES
- * places that a lane value holds; lane_bits and lane_sum bring lanes back to one value. Writing goes through bridge
- * functions, too. */
+ * places that a lane value holds; lane_bits, lane_sum and lane_max bring lanes back to one value. Writing goes through
+ * bridge functions, too. */
 #ifndef CORE_DIALECT_H
 #define CORE_DIALECT_H
 
@@ -56,6 +56,7 @@
 #define LANES 1
 #define lane_bits(c) ((c) ? 1u : 0u)
 #define lane_sum(a) (a)
+#define lane_max(a) (a)
 #define f1 float
 #define u1 uint
 #define b1 bool
@@ -144,7 +145,8 @@ typedef int32_t mask __attribute__((vector_size(4 * CORE_LANES)));
 /* {0} + x would be an addition, for it makes 0 of -0 */
 FN real real_in_lanes(float x) { return (real)IN_LANES(x); }
 FN u32 u32_in_lanes(uint32_t x) { return (u32)IN_LANES(x); }
-/* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY, lane_bits, lane_sum for this instruction set */
+/* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY, lane_bits, lane_sum, lane_max for this
+ * instruction set */
 #include "core/wide.h"
 #define and_(a, b) ((a) & (b))
 #define or_(a, b) ((a) | (b))
@@ -171,6 +173,7 @@ FN real real_of_bits(u32 bits) { return f1_of_bits(bits); }
 FN u32 bits_of_real(real x) { return bits_of_f1(x); }
 FN u1 lane_bits(mask c) { return c ? 1u : 0u; }
 FN u1 lane_sum(u32 a) { return a; }
+FN f1 lane_max(real a) { return a; }
 #define and_(a, b) ((a) && (b))
 #define or_(a, b) ((a) || (b))
 #define not_(a) (!(a))
@@ -188,11 +191,13 @@ typedef struct {
 /* An array of three uniform floats. */
 #define splat3(a) V3(K((a)[0]), K((a)[1]), K((a)[2]))
 
-/* Places l, l + 1, ..., l + LANES - 1 of 16; and what one value has added up to in all rounds. A shader whose work
- * groups share out the 16 defines both before inclusion: one round, and a sum over the group. */
+/* Places l, l + 1, ..., l + LANES - 1 of 16; and what one value has added up to in all rounds, or the largest that it
+ * has been. A shader whose work groups share out the 16 defines all three before inclusion: one round, and a sum or a
+ * maximum over the group. */
 #ifndef EACH16
 #define EACH16(l) for (int l = 0; l < 16; l += LANES)
 #define EACH16_SUM(x) (x)
+#define EACH16_MAX(x) (x)
 #endif
 
 /* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.

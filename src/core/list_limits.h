@@ -22,11 +22,15 @@
 #define LIST_SPARE LIST_GROUPS
 #define LIST_CHOSEN 256
 
+/* Rows of 16 entries; faces of a block (core/list_faces.h). */
+#define LIST_ROWS (LIST_ROOM / 16)
+#define LIST_FACES 16
+
 /* Shapes of lights in brief (core/list_sketch.h), and words of a sketch. */
 #define SKETCH_NONE 0u /* only the light itself tells */
 #define SKETCH_ROUND 1u
 #define SKETCH_FLAT 2u
 #define SKETCH_TWO_SIDED 3u
-#define SKETCH_WORDS 11
+#define SKETCH_WORDS 12
 
 #endif

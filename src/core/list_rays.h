@@ -9,11 +9,10 @@
 #ifndef CORE_LIST_RAYS_H
 #define CORE_LIST_RAYS_H
 
-#include "core/learned.h"
-#include "core/list_sketch.h"
+#include "core/list_faces.h"
 #include "core/lists.h"
 
-/* Sums over all entries: steer * share, and steer * expect, cd/m2. steer: the target, about, where a light is far. */
+/* Sums over entries: steer * share, and steer * expect, cd/m2. steer: the target, about, where a light is far. */
 struct list_sums {
     real all;
     real bright;
@@ -28,6 +27,13 @@ struct list_ray {
     real p; /* target there, unshadowed */
 };
 
+/* An entry that was drawn so often, and what it was weighed. */
+struct list_drawn {
+    u32 entry;
+    real times;
+    real weighed;
+};
+
 /* One of a pixel's rays, and its W, which stands for all of them. */
 struct list_kept {
     u32 ray;
@@ -37,57 +43,63 @@ struct list_kept {
 #ifndef CORE_GLSL
 typedef struct list_sums list_sums;
 typedef struct list_ray list_ray;
+typedef struct list_drawn list_drawn;
 typedef struct list_kept list_kept;
 #endif
 
-FN list_prior prior_load(CTX u1 i); /* of entry i, for the surfaces at hand */
+FN list_prior prior_load(CTX u1 place); /* of the list's rows, 16 a row, for the surfaces at hand */
 FN u32 entry_light(CTX u32 i);
 FN real entry_weight(CTX u32 i);
-FN void summed_store(CTX u1 i, real sum); /* steer * share of all entries before i */
+FN u1 near_entry(CTX u1 i); /* that is near for some pixels of the block */
+FN u1 near_place(CTX u1 i);
+FN mask near_pixels(CTX u1 i);            /* is it for those at hand? */
+FN void summed_store(CTX u1 i, real sum); /* steer * share of all near entries before i */
 FN real summed_at(CTX u32 i);
-FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times); /* ray number `ray` of the lanes in `on` */
-FN real drawn_times(CTX u1 ray);                                  /* 0: no such ray */
-FN real found_p(CTX u1 ray);                                      /* of the list_ray */
-FN real found_w(CTX u1 ray);                                      /* 0 where the ray was blocked */
+FN u32 near_entry_at(CTX u32 i);
+FN real far_at(CTX u32 face, u32 row, u32 column); /* as far_store and column_store had them */
+FN real column_at(CTX u32 face, u32 column);
+FN void drawn_store(CTX u32 ray, mask on, list_drawn d); /* ray number `ray` of the lanes in `on` */
+FN real drawn_times(CTX u1 ray);                         /* 0: no such ray */
+FN real found_p(CTX u1 ray);                             /* of the list_ray */
+FN real found_w(CTX u1 ray);                             /* 0 where the ray was blocked */
 
 /* ---- ask ---- */
 
-/* What entry i is weighed by, with the place that it is evaluated at where it is near. */
-FN real list_steer(CTX surf s, sketch_surf q, mask on, u1 i, u32 shift_u, u32 shift_v) {
-    u1 shape = sketch_shape(PASS i);
-    mask near = on;
+/* What an entry is weighed by where it is near for the pixel's face: in full, with the place that it is evaluated at,
+ * where it is near for the pixel too. */
+FN real list_steer(CTX surf s, sketch_surf q, mask on, u1 entry, u1 place, u32 shift_u, u32 shift_v) {
+    list_sketch k = sketch_load(PASS place);
+    real d2 = sketch_distance2(k, s.p);
+    mask near = and_(on, or_(k.shape == KU(SKETCH_NONE), sketch_near(k, q, d2, K(0.0f))));
     real p = K(0.0f);
-    if (shape != SKETCH_NONE) {
-        list_sketch k = sketch_load(PASS i);
-        real d2 = sketch_distance2(k, s.p);
-        near = and_(on, sketch_near(k, q, d2));
-        p = sel(on, sketch_target(s, q, k, shape, d2), p);
-    }
+    if (ANY(and_(on, not_(near))))
+        p = sel(on, sketch_target(s, q, k, d2, K(0.0f), K(0.0f)), p);
     if (ANY(near)) {
-        light l = light_splat(PASS entry_load(PASS i).light);
-        p = sel(near, target(PASS s, l, list_u(shift_u, KU(i)), list_v(shift_v, KU(i))), p);
+        light l = light_splat(PASS entry_load(PASS entry).light);
+        p = sel(near, target(PASS s, l, list_u(shift_u, KU(entry)), list_v(shift_v, KU(entry))), p);
     }
     return p;
 }
 
-FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
+/* Weighs the near ones. */
+FN list_sums list_weigh(CTX surf s, u32 key, u1 near) {
     list_sums sums;
     sums.all = K(0.0f);
     sums.bright = K(0.0f);
     u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
     sketch_surf q = sketch_surf_of(s);
-    for (u1 i = 0u; i < count; i++) {
+    for (u1 i = 0u; i < near; i++) {
         summed_store(PASS i, sums.all);
-        list_prior b = prior_load(PASS i);
-        real p = list_steer(PASS s, q, on, i, shift_u, shift_v);
+        list_prior b = prior_load(PASS near_place(PASS i));
+        real p = list_steer(PASS s, q, near_pixels(PASS i), near_entry(PASS i), near_place(PASS i), shift_u, shift_v);
         EXACT real w = p * K(b.share);
         EXACT real all = sums.all + w;
         EXACT real bright = sums.bright + p * K(b.expect);
         sums.all = all;
         sums.bright = bright;
     }
-    summed_store(PASS count, sums.all);
+    summed_store(PASS near, sums.all);
     return sums;
 }
 
@@ -101,36 +113,90 @@ FN real list_draws(list_sums sums, f1 rays, f1 brightness, real rounding) {
     return sel(sums.all > K(0.0f), n, K(0.0f));
 }
 
-/* The entry where `goal` falls: the last one before which no more than that has been summed up. A goal that rounding
- * has pushed past the end is of the last entry with any weight. */
-FN u32 list_entry_at(CTX u1 count, real end, real goal) {
-    u32 entry = KU(0u);
+/* The near entry where `goal` falls: the last one before which no more than that has been summed up. A goal that
+ * rounding has pushed past the end is of the last entry with any weight. */
+FN list_drawn near_at(CTX u1 count, real end, real goal) {
+    list_drawn d;
+    u32 i = KU(0u);
     for (u1 step = U32(LIST_ROOM) / 2u; step > 0u; step = step / 2u) {
-        u32 next = entry + KU(step);
-        mask there = next < KU(count);
-        real sum = summed_at(PASS selu(there, next, KU(0u)));
-        entry = selu(and_(there, and_(sum <= goal, sum < end)), next, entry);
+        if (step < count) {
+            u32 next = i + KU(step);
+            mask there = next < KU(count);
+            real sum = summed_at(PASS selu(there, next, KU(0u)));
+            i = selu(and_(there, and_(sum <= goal, sum < end)), next, i);
+        }
     }
-    return entry;
+    EXACT real weighed = summed_at(PASS i + KU(1u)) - summed_at(PASS i);
+    d.entry = near_entry_at(PASS i);
+    d.weighed = weighed;
+    d.times = K(1.0f);
+    return d;
 }
 
-/* Systematic draws: draw k < n is of the entry where the share (k + start) / n of all the weights lies. Draws of one
- * entry follow each other and are one ray. Returns the number of rays. */
-FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
-    EXACT real step = sums.all / max_(n, K(1.0f));
+/* The same of a face's far entries: the column first, then the row. */
+FN list_drawn far_entry_at(CTX u32 face, u1 rows, real all, real goal) {
+    list_drawn d;
+    u32 column = KU(0u);
+    real before = K(0.0f);
+    for (u1 step = 8u; step > 0u; step = step / 2u) {
+        u32 next = column + KU(step);
+        real sum = column_at(PASS face, next);
+        mask there = and_(sum <= goal, sum < all);
+        column = selu(there, next, column);
+        before = sel(there, sum, before);
+    }
+    EXACT real rest = goal - before;
+    u32 row = KU(0u);
+    before = K(0.0f);
+    real end = far_at(PASS face, KU(rows), column);
+    for (u1 step = U32(LIST_ROWS) / 2u; step > 0u; step = step / 2u) {
+        if (step < rows) {
+            u32 next = row + KU(step);
+            mask there = next < KU(rows);
+            real sum = far_at(PASS face, selu(there, next, KU(0u)), column);
+            there = and_(there, and_(sum <= rest, sum < end));
+            row = selu(there, next, row);
+            before = sel(there, sum, before);
+        }
+    }
+    EXACT real weighed = far_at(PASS face, row + KU(1u), column) - before;
+    d.entry = column * KU(rows) + row;
+    d.weighed = weighed;
+    d.times = K(1.0f);
+    return d;
+}
+
+/* Systematic draws: draw k < n is of the entry where the share (k + start) / n of all the weights lies, and the near
+ * entries come before the far ones. Draws of one entry follow each other and are one ray. Returns the number of rays.
+ * all: of list_sums. */
+FN u32 list_share_out(CTX real all, u1 near, u32 face, u1 rows, real n, real start) {
+    EXACT real step = all / max_(n, K(1.0f));
     EXACT real goal = step * start;
-    real end = summed_at(PASS KU(count));
+    real end = summed_at(PASS KU(near));
+    real far = column_at(PASS face, KU(16u));
     u32 last = KU(LIST_ROOM);
     real times = K(0.0f);
     u32 rays = KU(0u);
     mask on = n > K(0.0f);
     for (real drawn = K(0.0f); ANY(on); on = drawn < n) {
-        u32 entry = list_entry_at(PASS count, end, goal);
-        mask same = entry == last;
+        mask close = or_(goal < end, not_(far > K(0.0f)));
+        list_drawn d;
+        d.entry = KU(0u);
+        d.weighed = K(1.0f);
+        if (ANY(and_(on, close)))
+            d = near_at(PASS near, end, goal);
+        if (ANY(and_(on, not_(close)))) {
+            EXACT real rest = goal - end;
+            list_drawn f = far_entry_at(PASS face, rows, far, rest);
+            d.entry = selu(close, d.entry, f.entry);
+            d.weighed = sel(close, d.weighed, f.weighed);
+        }
+        mask same = d.entry == last;
         times = sel(same, times, K(0.0f)) + K(1.0f);
         rays = selu(and_(on, not_(same)), rays + KU(1u), rays);
-        last = entry;
-        drawn_store(PASS rays - KU(1u), on, entry, times);
+        last = d.entry;
+        d.times = times;
+        drawn_store(PASS rays - KU(1u), on, d);
         EXACT real beyond = goal + step;
         goal = beyond;
         drawn = drawn + K(1.0f);
@@ -138,16 +204,15 @@ FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
     return rays;
 }
 
-/* The ray to an entry that was drawn so often. There is none to a place that brings nothing. */
-FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, u32 entry, real times) {
+/* The ray to an entry that was drawn. There is none to a place that brings nothing. */
+FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, list_drawn d) {
     list_ray r;
-    EXACT real weighed = summed_at(PASS entry + KU(1u)) - summed_at(PASS entry); /* as it was drawn, to the bit */
-    EXACT real w = times * sums.all / (n * weighed) * entry_weight(PASS entry);
-    r.light = entry_light(PASS entry);
-    r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);
-    r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), entry);
+    EXACT real w = d.times * sums.all / (n * d.weighed) * entry_weight(PASS d.entry);
+    r.light = entry_light(PASS d.entry);
+    r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), d.entry);
+    r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), d.entry);
     r.p = target(PASS s, light_load(PASS r.light), r.u, r.v);
-    r.w = sel(and_(times > K(0.0f), r.p > K(0.0f)), w, K(0.0f));
+    r.w = sel(and_(d.times > K(0.0f), r.p > K(0.0f)), w, K(0.0f));
     return r;
 }
 

@@ -1,24 +1,26 @@
 /* core/list_sketch.h: a light of a tile's list in brief, made once a tile, and what a surface gets of it from afar,
- * about. That steers only: a pixel weighs the entries of its list by it, and what it then chooses is evaluated in full
- * (core/light.h) and divided by the very weight that chose it (core/list_rays.h).
+ * about. That steers only: a pixel, or several that see alike (core/list_faces.h), weighs the entries of its list by
+ * it, and what it then chooses is evaluated in full (core/light.h) and divided by the very weight that chose it
+ * (core/list_rays.h).
  *
  * From afar is beyond SKETCH_FAR radii of what the light lies in, and where the surface is glossy so far that the light
  * is narrower than the lobe. Spots and lights with a profile have no sketch. What the sketch gives is 0 only where no
- * place of the light reaches the surface, and no place of a flat light brings much more than twice of it: a surface
- * that sees the light edge on takes the mean of the cosine at its middle and at the farthest it may reach. */
+ * place of the light reaches any of the surfaces, and no place of a flat light brings more than four times of it: a
+ * surface that sees the light edge on takes the mean of the cosine at its middle and at the farthest it may reach. */
 #ifndef CORE_LIST_SKETCH_H
 #define CORE_LIST_SKETCH_H
 
 #include "core/list_limits.h"
 #include "core/reservoir.h"
 
-#define SKETCH_FAR 5.0f
-#define SKETCH_FAR_GLOSSY 2.0f /* radii, over alpha */
+#define SKETCH_FAR 3.0f
+#define SKETCH_FAR_GLOSSY 1.5f /* radii, over alpha */
 
 struct list_sketch {
     v3 middle;
     real radius; /* m around the middle */
-    v3 normal;   /* of flat lights, the side that shines; as long as the area, m2 */
+    v3 normal;   /* of flat lights, the side that shines; as long as the area, m2; else 0 */
+    real size;   /* that length */
     u32 shape;   /* SKETCH_NONE, ... */
     v3 shine;    /* parts of luminance in cd/m2 (flat) or cd (round), by channel */
 };
@@ -42,11 +44,13 @@ typedef struct list_sketch list_sketch;
 typedef struct sketch_surf sketch_surf;
 #endif
 
-FN u32 entry_lights(CTX u1 first, int l, u1 count); /* of entries first + l to first + l + LANES - 1; of any that are
-                                                     * past the last one, some light */
-FN void sketch_store(CTX u1 first, int l, list_sketch k); /* of these entries */
-FN list_sketch sketch_load(CTX u1 i);                     /* of entry i, in every lane */
-FN u1 sketch_shape(CTX u1 i);
+FN u32 entry_lights(CTX u1 row, int l, u1 rows, u1 count); /* of places l to l + LANES - 1 of a row of a list of so
+                                                            * many rows and entries; where there is none, some light */
+FN void sketch_store(CTX u1 row, int l, list_sketch k);    /* of these places */
+FN list_sketch sketch_load(CTX u1 place);                  /* in every lane; place: 16 a row */
+
+/* Rows of 16 that a list of so many entries has (core/list_faces.h). */
+FN1 u1 list_rows(u1 count) { return (count + 15u) / 16u; }
 
 /* ---- making them ---- */
 
@@ -75,6 +79,7 @@ FN list_sketch sketch_of(light l) {
     k.radius = sel(cornered, corner, sel(is_point(l), K(0.0f), l.radius));
     real size = sel(round, K(0.0f), sel(disc, K(CORE_PI), sel(tri, K(0.5f), K(1.0f))));
     k.normal = mul3(cross3(l.a, l.b), size);
+    k.size = sqrt_(dot3(k.normal, k.normal));
     EXACT real face = K(CORE_PI) * l.radius * l.radius;
     face = sel(sphere, face, K(1.0f));
     EXACT real red = l.e.x * K(0.2126f) * face;
@@ -89,9 +94,10 @@ FN list_sketch sketch_of(light l) {
 
 /* Of all entries of the tile's list. */
 FN1 void list_sketches(CTX u1 count) {
-    for (u1 first = 0u; first < count; first = first + 16u)
+    u1 rows = list_rows(count);
+    for (u1 row = 0u; row < rows; row++)
         EACH16(l)
-    sketch_store(PASS first, l, sketch_of(light_load(PASS entry_lights(PASS first, l, count))));
+    sketch_store(PASS row, l, sketch_of(light_load(PASS entry_lights(PASS row, l, rows, count))));
 }
 
 /* ---- looking at them ---- */
@@ -148,26 +154,28 @@ FN real sketch_distance2(list_sketch k, v3 y) {
     return max_(dot3(w, w), K(1e-12f));
 }
 
-/* Is it near? */
-FN mask sketch_near(list_sketch k, sketch_surf q, real d2) { return d2 < q.reach * (k.radius * k.radius); }
+/* Is it near for some surface around? */
+FN mask sketch_near(list_sketch k, sketch_surf q, real d2, real around) {
+    EXACT real wide = k.radius + K(2.0f) * around;
+    return d2 < q.reach * (wide * wide);
+}
 
-/* About the target of any place on the light, which is not near. */
-FN real sketch_target(surf s, sketch_surf q, list_sketch k, u1 shape, real d2) {
+/* About the target of any place on the light, which is not near, for surfaces no farther than `around` from s (m) whose
+ * normals' angles to that of s have no larger sine than `spread`. */
+FN real sketch_target(surf s, sketch_surf q, list_sketch k, real d2, real around, real spread) {
     v3 w = sub3(k.middle, s.p);
     real inv = quick_inverse_root(d2);
     EXACT real better = inv * (K(1.5f) - K(0.5f) * d2 * inv * inv); /* lobes are narrow */
     inv = better;
     v3 wi = mul3(w, inv);
-    real facing = K(1.0f);
-    if (shape != SKETCH_ROUND) {
-        facing = K(0.0f) - dot3(k.normal, wi);
-        if (shape == SKETCH_TWO_SIDED)
-            facing = abs_(facing);
-    }
+    real facing = K(0.0f) - dot3(k.normal, wi);
+    facing = sel(k.shape == KU(SKETCH_TWO_SIDED), abs_(facing), facing);
+    EXACT real behind = K(0.5f) * (facing + k.size * around * inv);
+    facing = sel(k.shape == KU(SKETCH_ROUND), K(1.0f), max_(facing, max_(behind, K(0.0f))));
     real n_wi = dot3(s.n, wi);
-    EXACT real rim = K(0.5f) * (n_wi + k.radius * inv);
-    real nl = max_(max_(n_wi, rim), K(0.0f));
-    EXACT real got = max_(facing, K(0.0f)) * nl * (inv * inv);
+    EXACT real rim = K(0.5f) * (n_wi + ((k.radius + around) * inv + spread));
+    real nl = max_(n_wi, max_(rim, K(0.0f)));
+    EXACT real got = facing * nl * (inv * inv);
     EXACT real f = k.shine.x * q.tint.x + k.shine.y * q.tint.y + k.shine.z * q.tint.z;
     if (ANY(q.shiny)) {
         real ci = K(1.0f) - nl;

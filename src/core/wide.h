@@ -84,11 +84,25 @@ FN u1 lane_bits(mask m) {
     return (u1)_mm512_movepi32_mask((__m512i)m);
 #elif CORE_LANES == 8 && defined(__AVX2__)
     return (u1)_mm256_movemask_ps((__m256)m);
+#elif CORE_LANES == 4 && defined(__x86_64__)
+    return (u1)_mm_movemask_ps((__m128)m);
 #else
     u1 bits = 0;
     for (int i = 0; i < CORE_LANES; i++)
         bits |= (m[i] ? 1u : 0u) << i;
     return bits;
+#endif
+}
+
+/* Of values that are not NaN. */
+FN f1 lane_max(real a) {
+#if CORE_LANES == 16 && defined(__AVX512F__)
+    return _mm512_reduce_max_ps((__m512)a);
+#else
+    f1 most = a[0];
+    for (int i = 1; i < CORE_LANES; i++)
+        most = most > a[i] ? most : a[i];
+    return most;
 #endif
 }
 

@@ -27,8 +27,19 @@ uint sum_of_group(uint x) {
         sum += parts_[i];
     return sum;
 }
+shared float parts1_[16];
+float largest_of_group(float x) {
+    barrier();
+    parts1_[gl_LocalInvocationID.x] = x;
+    barrier();
+    float most = parts1_[0];
+    for (uint i = 1u; i < 16u; i++)
+        most = parts1_[i] > most ? parts1_[i] : most;
+    return most;
+}
 #define EACH16(l) for (int l = int(gl_LocalInvocationID.x), last_ = l; l <= last_; l++)
 #define EACH16_SUM(x) sum_of_group(x)
+#define EACH16_MAX(x) largest_of_group(x)
 
 #include "core/dialect.h"
 #include "core/light.h"
@@ -38,6 +49,19 @@ uint tile_; /* of this invocation; and of its pixel, the block and the place in 
 uint block_;
 uint place_;
 float summed_[LIST_ROOM + 1];
+
+/* The block at hand: what its pixels see, and what they weigh. */
+shared float seen_[15][16];
+shared float far_[LIST_FACES][LIST_ROWS + 2][16];
+shared float column_[LIST_FACES][17];
+shared uint near_bits_[LIST_FACES][LIST_ROWS];
+shared uint face_pixels_[LIST_FACES];
+shared float face_all_[LIST_FACES];
+shared float face_bright_[LIST_FACES];
+shared uint near_entry_[LIST_ROOM];
+shared uint near_place_[LIST_ROOM];
+shared uint near_pixels_[LIST_ROOM];
+uint face_; /* of this invocation's pixel */
 
 uint wu(uint at) { return mem.word[at]; }
 float wf(uint at) { return uintBitsToFloat(mem.word[at]); }
@@ -188,37 +212,115 @@ list_brief brief_load(uint part, uint cluster, int l) {
 }
 uint cluster_light(uint part, uint cluster, uint place) { return wu(wu(HEAD_CLUSTERS) + 48u * cluster + place); }
 
-list_prior prior_load(uint i) {
+uint count_of_list() { return wu(answer(uint(ANSWER_COUNT))); }
+uint entry_light(uint i) { return entry_load(i).light; }
+float entry_weight(uint i) { return entry_load(i).weight; }
+uint entry_in(uint at, uint rows) { return at % 16u * rows + at / 16u; }
+list_prior prior_load(uint at) {
+    uint count = count_of_list();
+    uint i = entry_in(at, list_rows(count));
+    if (i >= count)
+        return list_prior(0.0, 0.0);
     list_entry e = entry_load(i);
     return list_prior_of(e.weight, wf(wu(HEAD_VISIBILITY) + e.light));
 }
-uint entry_light(uint i) { return entry_load(i).light; }
-uint entry_lights(uint first, int l, uint count) { return entry_light(minu1(first + uint(l), count - 1u)); }
-uint sketch_word(uint i, int field) { return scratch(uint(SCRATCH_SKETCHES + field * LIST_ROOM) + i); }
-void sketch_store(uint first, int l, list_sketch k) {
-    uint i = first + uint(l);
-    for (int c = 0; c < 3; c++) {
-        put(sketch_word(i, c), k.middle[c]);
-        put(sketch_word(i, 4 + c), k.normal[c]);
-        put(sketch_word(i, 8 + c), k.shine[c]);
-    }
-    put(sketch_word(i, 3), k.radius);
-    put(sketch_word(i, 7), k.shape);
+list_priors prior_row(uint row, int l) {
+    list_prior b = prior_load(16u * row + uint(l));
+    return list_priors(b.share, b.expect);
 }
-uint sketch_shape(uint i) { return wu(sketch_word(i, 7)); }
-list_sketch sketch_load(uint i) {
+uint entry_lights(uint row, int l, uint rows, uint count) {
+    return entry_light(minu1(entry_in(16u * row + uint(l), rows), count - 1u));
+}
+uint sketch_word(uint at, int field) { return scratch(uint(SCRATCH_SKETCHES + field * LIST_ROOM) + at); }
+void sketch_store(uint row, int l, list_sketch k) {
+    uint at = 16u * row + uint(l);
+    for (int c = 0; c < 3; c++) {
+        put(sketch_word(at, c), k.middle[c]);
+        put(sketch_word(at, 4 + c), k.normal[c]);
+        put(sketch_word(at, 8 + c), k.shine[c]);
+    }
+    put(sketch_word(at, 3), k.radius);
+    put(sketch_word(at, 7), k.size);
+    put(sketch_word(at, 11), k.shape);
+}
+list_sketch sketch_load(uint at) {
     float f[SKETCH_WORDS];
     for (int c = 0; c < SKETCH_WORDS; c++)
-        f[c] = wf(sketch_word(i, c));
-    return list_sketch(vec3(f[0], f[1], f[2]), f[3], vec3(f[4], f[5], f[6]), sketch_shape(i), vec3(f[8], f[9], f[10]));
+        f[c] = wf(sketch_word(at, c));
+    return list_sketch(vec3(f[0], f[1], f[2]), f[3], vec3(f[4], f[5], f[6]), f[7], wu(sketch_word(at, 11)),
+                       vec3(f[8], f[9], f[10]));
 }
-float entry_weight(uint i) { return entry_load(i).weight; }
+list_sketch sketch_row(uint row, int l) { return sketch_load(16u * row + uint(l)); }
+
+/* ---- faces, in memory that the block's invocations share ---- */
+
+void settle_block() {
+    memoryBarrierShared();
+    barrier();
+}
+face_pixel face_pixel_load(uint at) {
+    float f[15];
+    for (int c = 0; c < 15; c++)
+        f[c] = seen_[c][at];
+    return face_pixel(vec3(f[0], f[1], f[2]), vec3(f[3], f[4], f[5]), vec3(f[6], f[7], f[8]), vec3(f[9], f[10], f[11]),
+                      f[12], f[13], f[14]);
+}
+face_pixels face_pixels_load(int l) {
+    face_pixel q = face_pixel_load(uint(l));
+    return face_pixels(surf(q.p, q.n, q.wo, q.albedo, q.f0, q.alpha), q.depth);
+}
+bool face_lanes(uint pixels, int l) { return (pixels >> l & 1u) != 0u; }
+void far_store(uint face, uint row, int l, float sum) { far_[face][row][l] = sum; }
+float far_sum(uint face, uint row, uint column) {
+    settle_block();
+    return far_[face][row][column];
+}
+void column_store(uint face, uint column, float sum) {
+    if (first())
+        column_[face][column] = sum;
+}
+void near_bits_store(uint face, uint row, int l, bool near) {
+    uint bits = sum_of_group(near ? 1u << l : 0u);
+    if (first())
+        near_bits_[face][row] = bits;
+}
+uint near_bits_load(uint face, uint row) {
+    settle_block();
+    return near_bits_[face][row];
+}
+void face_store(uint number, list_face f, face_sums sums) {
+    if (first()) {
+        face_pixels_[number] = f.pixels;
+        face_all_[number] = sums.all;
+        face_bright_[number] = sums.bright;
+    }
+    if (face_lanes(f.pixels, int(place_)))
+        face_ = number;
+    settle_block();
+}
+uint pixels_of_face(uint number) { return face_pixels_[number]; }
+void near_entry_store(uint i, uint entry, uint at, uint pixels) {
+    if (first()) {
+        near_entry_[i] = entry;
+        near_place_[i] = at;
+        near_pixels_[i] = pixels;
+    }
+    settle_block();
+}
+uint near_entry(uint i) { return near_entry_[i]; }
+uint near_place(uint i) { return near_place_[i]; }
+bool near_pixels(uint i) { return face_lanes(near_pixels_[i], int(place_)); }
+uint near_entry_at(uint i) { return near_entry_[i]; }
+float far_at(uint face, uint row, uint column) { return far_[face][row][column]; }
+float column_at(uint face, uint column) { return column_[face][column]; }
+
 void summed_store(uint i, float sum) { summed_[i] = sum; }
 float summed_at(uint i) { return summed_[i]; }
-void drawn_store(uint ray, bool on, uint entry, float times) {
+void drawn_store(uint ray, bool on, list_drawn d) {
     if (on) {
-        put(ray_answer(ray, uint(RAY_ENTRY)), entry);
-        put(ray_answer(ray, uint(RAY_TIMES)), times);
+        put(ray_answer(ray, uint(RAY_ENTRY)), d.entry);
+        put(ray_answer(ray, uint(RAY_TIMES)), d.times);
+        put(ray_answer(ray, uint(RAY_WEIGHED)), d.weighed);
     }
 }
 float drawn_times(uint ray) { return wf(ray_answer(ray, uint(RAY_TIMES))); }
@@ -227,7 +329,8 @@ float found_w(uint ray) { return wf(ray_answer(ray, uint(RAY_W))); }
 
 /* ---- the frame ---- */
 
-void share_pixel(uint count, uint x, uint y) {
+/* What this invocation's pixel sees. */
+surf surf_here() {
     vec3 eye = wv(uint(HEAD_EYE));
     list_point q = tile_point(block_, place_);
     list_material m = list_material_load(q.material);
@@ -240,18 +343,41 @@ void share_pixel(uint count, uint x, uint y) {
     s.albedo = m.albedo;
     s.f0 = m.f0;
     s.alpha = m.alpha;
+    return s;
+}
+
+void see(surf s, float depth) {
+    for (int c = 0; c < 3; c++) {
+        seen_[c][place_] = s.p[c];
+        seen_[3 + c][place_] = s.n[c];
+        seen_[6 + c][place_] = s.wo[c];
+        seen_[9 + c][place_] = s.albedo[c];
+    }
+    seen_[12][place_] = s.f0;
+    seen_[13][place_] = s.alpha;
+    seen_[14][place_] = depth;
+    settle_block();
+}
+
+void share_pixel(surf s, uint near, uint count, uint x, uint y) {
     uint pixel = y * wu(HEAD_WIDTH) + x;
     uint key = rng_key(wu(HEAD_SEED), pixel, wu(HEAD_FRAME));
-    list_sums sums = list_weigh(s, true, key, count);
+    list_sums sums = list_weigh(s, key, near);
+    EXACT float all = sums.all + face_all_[face_];
+    EXACT float bright = sums.bright + face_bright_[face_];
+    sums.all = all;
+    sums.bright = bright;
     float n = list_draws(sums, float(wu(HEAD_RAYS)), wf(HEAD_BRIGHTNESS), rng(key, DIM_LIST_RAYS));
-    uint rays = list_share_out(sums, count, n, rng(key, DIM_LIST_START));
+    uint rays = list_share_out(sums.all, near, face_, list_rows(count), n, rng(key, DIM_LIST_START));
     put(pixel_answer(uint(PIXEL_ALL)), sums.all);
     put(pixel_answer(uint(PIXEL_BRIGHT)), sums.bright);
     put(pixel_answer(uint(PIXEL_DRAWS)), n);
     vec3 colour = vec3(0.0);
     put(pixel_answer(uint(PIXEL_SHOWN)), list_shown(rays, n, rng(key, DIM_LIST_SHOWN)));
     for (uint k = 0u; k < rays; k++) {
-        list_ray r = list_ask(s, sums, n, key, wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k));
+        list_drawn d = list_drawn(wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k),
+                                  wf(ray_answer(k, uint(RAY_WEIGHED))));
+        list_ray r = list_ask(s, sums, n, key, d);
         bool seen = frame_sees(pixel, k);
         r.w = seen ? r.w : 0.0;
         put(ray_answer(k, uint(RAY_LIGHT)), r.light);
@@ -293,6 +419,15 @@ void main() {
     uint count = wu(answer(uint(ANSWER_COUNT)));
     uint x = tile_ % wu(HEAD_TILES_X) * 16u + block_ % 4u * 4u + place_ % 4u;
     uint y = tile_ / wu(HEAD_TILES_X) * 16u + block_ / 4u * 4u + place_ / 4u;
-    if (count > 0u && (tile_pixels(block_) >> place_ & 1u) != 0u)
-        share_pixel(count, x, y);
+    uint pixels = tile_pixels(block_);
+    if (count == 0u || pixels == 0u)
+        return;
+    bool sees = face_lanes(pixels, int(place_));
+    surf s;
+    if (sees)
+        s = surf_here();
+    see(s, sees ? tile_point(block_, place_).depth : 0.0);
+    uint near = weigh_faces(pixels, list_rows(count));
+    if (sees)
+        share_pixel(s, near, count, x, y);
 }

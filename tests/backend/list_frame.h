@@ -50,7 +50,8 @@
 #define RAY_V 4
 #define RAY_W 5
 #define RAY_P 6
-#define RAY_WORDS 7
+#define RAY_WEIGHED 7
+#define RAY_WORDS 8
 
 #define PIXEL_ALL 0
 #define PIXEL_BRIGHT 1

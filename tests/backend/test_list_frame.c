@@ -165,6 +165,7 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
             put_float(ray + RAY_V, draws[i].r.v[l]);
             put_float(ray + RAY_W, draws[i].r.w[l]);
             put_float(ray + RAY_P, draws[i].r.p[l]);
+            put_float(ray + RAY_WEIGHED, asked->weighed[i][l]);
         }
     }
     free(asked);
@@ -187,8 +188,7 @@ static uint32_t *answer(const trial *t, const kernels *k) {
         k->list_fill(&ctx);
         for (uint32_t i = 0; i < s->list.count; i++) {
             list_prior one = list_prior_of(s->list.weight[i], t->visibility[s->list.light[i]]);
-            b.share[i] = one.share;
-            b.expect[i] = one.expect;
+            set_prior(&b, (s->list.count + 15) / 16, i, one.share, one.expect);
         }
         to[ANSWER_COUNT] = s->list.count;
         to[ANSWER_COPIES] = s->list.copies;

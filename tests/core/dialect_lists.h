@@ -13,23 +13,29 @@
 #define FAKE_ENTRIES (FAKE_CHOSEN + 128u)
 #define FAKE_ROOM 64u
 #define FAKE_SKETCHES (FAKE_ENTRIES + 2u * FAKE_ROOM)
-#define FAKE_END (FAKE_SKETCHES + 32u * U32(SKETCH_WORDS)) /* at most TILE_WORDS */
+#define FAKE_SEEN (FAKE_SKETCHES + 32u * U32(SKETCH_WORDS))
+#define FAKE_FAR (FAKE_SEEN + 15u * 16u) /* of three faces, and four rows, the last of what is expected */
+#define FAKE_COLUMNS (FAKE_FAR + 3u * 64u)
+#define FAKE_BITS (FAKE_COLUMNS + 3u * 17u)
+#define FAKE_NEAR (FAKE_BITS + 3u * 4u)
+#define FAKE_END (FAKE_NEAR + 3u * 32u) /* at most TILE_WORDS */
 
 #define PIXEL_ENTRIES 20u /* of the list that pixels share their rays out over */
+#define PIXEL_NEAR 12u    /* of them: the first ones */
 #define PIXEL_RAYS 12
 
 /* The tile at hand, and of the pixels at hand: what they weigh, draw and find. */
 #if defined(CORE_GLSL)
 u1 dialect_number;
-real dialect_summed[PIXEL_ENTRIES + 1u];
-u32 dialect_drawn[PIXEL_RAYS];
-real dialect_times[PIXEL_RAYS];
+real dialect_summed[PIXEL_NEAR + 1u];
+mask dialect_near[PIXEL_NEAR];
+list_drawn dialect_drawn[PIXEL_RAYS];
 list_ray dialect_found[PIXEL_RAYS];
 #else
 static u1 dialect_number;
-static real dialect_summed[PIXEL_ENTRIES + 1u];
-static u32 dialect_drawn[PIXEL_RAYS];
-static real dialect_times[PIXEL_RAYS];
+static real dialect_summed[PIXEL_NEAR + 1u];
+static mask dialect_near[PIXEL_NEAR];
+static list_drawn dialect_drawn[PIXEL_RAYS];
 static list_ray dialect_found[PIXEL_RAYS];
 #endif
 
@@ -233,67 +239,55 @@ FN light light_splat(CTX u1 i) { return any_light(hash_u32(KU(i) + KU(77u))); }
 
 /* ---- what pixels know of entries and rays ---- */
 
-FN list_prior prior_load(CTX u1 i) {
-    return list_prior_of(entry_load(PASS i).weight, learned_visibility(F32(i & 7u), F32(i & 3u), 0.375f));
-}
-FN u32 entry_light(CTX u32 i) { return i * KU(37u) + KU(ITEM_COUNT & 15u); }
-FN u32 entry_lights(CTX u1 first, int l, u1 count) { return entry_light(PASS lane_places(first + U32(l))); }
-FN u1 sketch_word(CTX u1 i, u1 field) { return FAKE_SKETCHES + 32u * field + i; }
-FN void sketch_store(CTX u1 first, int l, list_sketch k) {
-    u1 i = first + U32(l);
-    words_store(PASS sketch_word(PASS i, 0u), bits_of_real(k.middle.x));
-    words_store(PASS sketch_word(PASS i, 1u), bits_of_real(k.middle.y));
-    words_store(PASS sketch_word(PASS i, 2u), bits_of_real(k.middle.z));
-    words_store(PASS sketch_word(PASS i, 3u), bits_of_real(k.radius));
-    words_store(PASS sketch_word(PASS i, 4u), bits_of_real(k.normal.x));
-    words_store(PASS sketch_word(PASS i, 5u), bits_of_real(k.normal.y));
-    words_store(PASS sketch_word(PASS i, 6u), bits_of_real(k.normal.z));
-    words_store(PASS sketch_word(PASS i, 7u), k.shape);
-    words_store(PASS sketch_word(PASS i, 8u), bits_of_real(k.shine.x));
-    words_store(PASS sketch_word(PASS i, 9u), bits_of_real(k.shine.y));
-    words_store(PASS sketch_word(PASS i, 10u), bits_of_real(k.shine.z));
-}
-FN u1 sketch_shape(CTX u1 i) { return word_load(PASS sketch_word(PASS i, 7u)); }
-FN list_sketch sketch_load(CTX u1 i) {
-    list_sketch k;
-    k.middle = spread3(word3_load(PASS sketch_word(PASS i, 0u), 32u));
-    k.radius = K(f1_of_bits(word_load(PASS sketch_word(PASS i, 3u))));
-    k.normal = spread3(word3_load(PASS sketch_word(PASS i, 4u), 32u));
-    k.shape = KU(sketch_shape(PASS i));
-    k.shine = spread3(word3_load(PASS sketch_word(PASS i, 8u), 32u));
-    return k;
-}
+FN void put_f1(CTX u1 item, int slot, f1 x) { put_u1(PASS item, slot, bits_of_f1(x)); }
+
+#include "dialect_faces.h"
+
+/* ---- what pixels weigh alone, and draw: the first entries are near, and what the others weigh comes from numbers ----
+ */
+
+FN u1 near_entry(CTX u1 i) { return i; }
+FN u1 near_place(CTX u1 i) { return (i & 1u) * 16u + shr(i, 1); }
+FN mask near_pixels(CTX u1 i) { return dialect_near[i]; }
+FN u32 near_entry_at(CTX u32 i) { return i; }
+FN real far_at(CTX u32 face, u32 row, u32 column) { return to_real(row * (row + column + face)) * K(0.125f); }
+FN real column_at(CTX u32 face, u32 column) { return to_real(column * (column + face * KU(2u) + KU(3u))) * K(0.125f); }
 FN real entry_weight(CTX u32 i) { return K(1.0f) + rng(i, KU(2u)); }
 FN void summed_store(CTX u1 i, real sum) { dialect_summed[i] = sum; }
 FN real summed_at(CTX u32 i) {
     real x = dialect_summed[0];
-    for (u1 k = 1u; k <= PIXEL_ENTRIES; k++)
+    for (u1 k = 1u; k <= PIXEL_NEAR; k++)
         x = sel(i == KU(k), dialect_summed[k], x);
     return x;
 }
-FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
+FN void drawn_store(CTX u32 ray, mask on, list_drawn d) {
     for (int k = 0; k < PIXEL_RAYS; k++) {
         mask here = and_(on, ray == KU(U32(k)));
-        dialect_drawn[k] = selu(here, entry, dialect_drawn[k]);
-        dialect_times[k] = sel(here, times, dialect_times[k]);
+        dialect_drawn[k].entry = selu(here, d.entry, dialect_drawn[k].entry);
+        dialect_drawn[k].times = sel(here, d.times, dialect_drawn[k].times);
+        dialect_drawn[k].weighed = sel(here, d.weighed, dialect_drawn[k].weighed);
     }
 }
-FN real drawn_times(CTX u1 ray) { return dialect_times[ray]; }
+FN real drawn_times(CTX u1 ray) { return dialect_drawn[ray].times; }
 FN real found_p(CTX u1 ray) { return dialect_found[ray].p; }
 FN real found_w(CTX u1 ray) { return dialect_found[ray].w; }
 
 /* ---- pixels ---- */
 
 /* Shares rays out anew; returns a number of all that were drawn. */
-FN u32 draw_rays(CTX u32 item, int slot, list_sums sums, real n, real start) {
+FN u32 draw_rays(CTX u32 item, int slot, real all_of, real n, real start) {
     for (int k = 0; k < PIXEL_RAYS; k++) {
-        dialect_drawn[k] = KU(0u);
-        dialect_times[k] = K(0.0f);
+        dialect_drawn[k].entry = KU(0u);
+        dialect_drawn[k].times = K(0.0f);
+        dialect_drawn[k].weighed = K(1.0f);
     }
-    u32 rays = list_share_out(PASS sums, PIXEL_ENTRIES, n, start);
+    u32 face = item & KU(3u);
+    u32 rays = list_share_out(PASS all_of, PIXEL_NEAR, face, list_rows(PIXEL_ENTRIES), n, start);
     u32 all = rays;
-    for (int k = 0; k < PIXEL_RAYS; k++)
-        all = hash_u32(all + dialect_drawn[k] * KU(16u) + to_u32(dialect_times[k]));
+    for (int k = 0; k < PIXEL_RAYS; k++) {
+        all = hash_u32(all + dialect_drawn[k].entry * KU(16u) + to_u32(dialect_drawn[k].times));
+        all = hash_u32(all + bits_of_real(dialect_drawn[k].weighed));
+    }
     put_u32(PASS item, slot, rays);
     return all;
 }
@@ -312,22 +306,25 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, LISTS_FIRST + 1, list_v(bits, shr(bits, 24)));
     put_resv(PASS item, LISTS_FIRST + 2, ris_list(PASS s, key, PIXEL_ENTRIES));
     list_sketches(PASS PIXEL_ENTRIES);
-    list_sums sums = list_weigh(PASS s, rng(key, KU(5001u)) < K(0.9f), key, PIXEL_ENTRIES);
-    real n = list_draws(sums, 4.0f, 0.75f, rng(key, KU(5002u)));
+    for (u1 i = 0u; i < PIXEL_NEAR; i++)
+        dialect_near[i] = rng(key, KU(5040u + i)) < K(0.9f);
+    list_sums sums = list_weigh(PASS s, key, PIXEL_NEAR);
     put_real(PASS item, LISTS_FIRST + 8, sums.all);
     put_real(PASS item, LISTS_FIRST + 9, sums.bright);
+    EXACT real all = sums.all + column_at(PASS item & KU(3u), KU(16u));
+    sums.all = all;
+    real n = list_draws(sums, 4.0f, 0.75f, rng(key, KU(5002u)));
     put_real(PASS item, LISTS_FIRST + 10, n);
     /* weights that add up to less than was thought: the last draws lie past the end */
-    list_sums more = sums;
-    more.all = sums.all * K(1.5f);
-    put_u32(PASS item, LISTS_FIRST + 12, draw_rays(PASS item, LISTS_FIRST + 11, more, n, rng(key, KU(5003u))));
-    put_u32(PASS item, LISTS_FIRST + 14, draw_rays(PASS item, LISTS_FIRST + 13, sums, n, rng(key, KU(5004u))));
+    put_u32(PASS item, LISTS_FIRST + 12,
+            draw_rays(PASS item, LISTS_FIRST + 11, sums.all * K(1.5f), n, rng(key, KU(5003u))));
+    put_u32(PASS item, LISTS_FIRST + 14, draw_rays(PASS item, LISTS_FIRST + 13, sums.all, n, rng(key, KU(5004u))));
     for (int k = 0; k < PIXEL_RAYS; k++) {
         mask blocked = rng(key, KU(5010u + U32(k))) < K(0.4f);
-        dialect_found[k] = list_ask(PASS s, sums, n, key, dialect_drawn[k], dialect_times[k]);
+        dialect_found[k] = list_ask(PASS s, sums, n, key, dialect_drawn[k]);
         dialect_found[k].w = sel(blocked, K(0.0f), dialect_found[k].w);
     }
-    list_ray one = list_ask(PASS s, sums, n, key, dialect_drawn[1], dialect_times[1]);
+    list_ray one = list_ask(PASS s, sums, n, key, dialect_drawn[1]);
     put_u32(PASS item, LISTS_FIRST + 15, one.light);
     put_real(PASS item, LISTS_FIRST + 16, one.u);
     put_real(PASS item, LISTS_FIRST + 17, one.v);
@@ -347,7 +344,7 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_v3(PASS item, LISTS_FIRST + 83, brief.normal);
     put_v3(PASS item, LISTS_FIRST + 86, brief.shine);
     put_u32(PASS item, LISTS_FIRST + 89, brief.shape);
-    put_real(PASS item, LISTS_FIRST + 90, sketch_target(s, q, brief, SKETCH_ROUND + (ITEM_COUNT & 1u), d2));
+    put_real(PASS item, LISTS_FIRST + 90, sketch_target(s, q, brief, d2, rng(key, KU(5028u)), K(0.125f)));
     put_real(PASS item, LISTS_FIRST + 91, sketch_gloss(s, q, s.n, rng(key, KU(5009u)), rng(key, KU(5030u))));
     put_real(PASS item, LISTS_FIRST + 92, quick_inverse_root(d2));
     EXACT real squares = rng(key, KU(5007u)) * K(1e-6f);
@@ -386,7 +383,6 @@ FN void lists_item(CTX u32 item, u32 key, surf s) {
 
 /* ---- tiles ---- */
 
-FN void put_f1(CTX u1 item, int slot, f1 x) { put_u1(PASS item, slot, bits_of_f1(x)); }
 FN void put_f3(CTX u1 item, int slot, f3 a) {
     put_f1(PASS item, slot, a.x);
     put_f1(PASS item, slot + 1, a.y);
@@ -525,6 +521,7 @@ FN void lists_tile(CTX u1 item) {
     tile_scores(PASS item, patches);
     tile_learned(PASS item);
     tile_list(PASS item, eye);
+    tile_faces(PASS item);
 }
 
 #endif

@@ -10,12 +10,12 @@
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
 #define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)
-#define LISTS_SLOTS 101 /* dialect_lists.h */
+#define LISTS_SLOTS 110 /* dialect_lists.h */
 #define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
 #define PRESAMPLED_SLOTS 28 /* dialect_presampled.h */
 #define ITEM_SLOTS (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
-#define TILE_WORDS 3040 /* of memory for a tile */
+#define TILE_WORDS 3648 /* of memory for a tile */
 
 #endif

@@ -179,6 +179,10 @@ static const struct {
     { LISTS_FIRST + 91, "sketch_gloss" },
     { LISTS_FIRST + 92, "quick_inverse_root" },
     { LISTS_FIRST + 93, "join_patches" },
+    { LISTS_FIRST + 101, "face_of" },
+    { LISTS_FIRST + 104, "weigh_face" },
+    { LISTS_FIRST + 107, "near_entries" },
+    { LISTS_FIRST + 109, "weigh_faces" },
     { TEXTURES_FIRST, "texture_level" },
     { TEXTURES_FIRST + 1, "texture_albedo" },
     { TEXTURES_FIRST + 4, "texture_albedo, first level" },
@@ -201,7 +205,8 @@ static const struct {
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
                                       37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90, 96, 110 };
-static const int list_integers[] = { 2, 11, 12, 13, 14, 15, 20, 21, 35, 36, 53, 54, 56, 57, 58, 67, 73, 74, 75, 89 };
+static const int list_integers[] = { 2,  11, 12, 13, 14, 15, 20, 21, 35,  36,  53,  54,
+                                     56, 57, 58, 67, 73, 74, 75, 89, 101, 107, 108, 109 };
 
 static bool holds_integers(int slot) {
     for (size_t i = 0; i < sizeof(frame_integers) / sizeof(frame_integers[0]); i++)

@@ -1,41 +1,11 @@
 /* core/list_rays.h: a pixel never asks for more rays than there is room for, however its random numbers round. */
-#include "../test.h"
 #include "no_profiles.h"
 
 #include <math.h>
 
+#include "given_list.h"
+
 enum { ENTRIES = 200, RAYS = 64 };
-struct core_context {
-    float *summed;
-    uint32_t *rays, room; /* rays: how many were drawn */
-    double *times;
-};
-
-#include "no_lists.h"
-
-FN light light_load(CTX u32 i) { return (light){ .kind = LIGHT_POINT }; }
-FN light light_splat(CTX u1 i) { return light_load(PASS i); }
-FN list_entry entry_load(CTX u1 i) { return (list_entry){ i, 1 }; }
-FN list_prior prior_load(CTX u1 i) { return (list_prior){ 0 }; }
-FN u32 entry_lights(CTX u1 first, int l, u1 count) { return first; }
-FN void sketch_store(CTX u1 first, int l, list_sketch k) {}
-FN list_sketch sketch_load(CTX u1 i) { return (list_sketch){ .radius = 0 }; }
-FN u1 sketch_shape(CTX u1 i) { return SKETCH_NONE; }
-FN u32 entry_light(CTX u32 i) { return i; }
-FN real entry_weight(CTX u32 i) { return 1; }
-FN void summed_store(CTX u1 i, real sum) { ctx->summed[i] = sum; }
-FN real summed_at(CTX u32 i) { return ctx->summed[i]; }
-FN real drawn_times(CTX u1 ray) { return 0; }
-FN real found_p(CTX u1 ray) { return 0; }
-FN real found_w(CTX u1 ray) { return 0; }
-FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
-    if (!on)
-        return;
-    if (ray >= ctx->room)
-        fail_msg("ray %u, where there is room for %u", ray, ctx->room);
-    *ctx->rays = ray + 1;
-    ctx->times[ray] = (double)times; /* each draw of an entry tells the ray anew */
-}
 
 /* What random numbers become: the largest, and what is around where a sum of it rounds up. */
 static const float roundings[] = { 0, .25f, .5f, 1 - 0x1p-10f, 1 - 0x1p-19f, 1 - 0x1p-20f, 1 - 0x1p-21f, 1 - 0x1p-24f };
@@ -64,46 +34,81 @@ static void fewer_draws(void **state) {
     assert_true(list_draws(sums, 4, 1, .9f) == 0);
 }
 
+/* Entries whose weights do not add up without rounding: the first ones are near, and all the others far. */
+static void make_weights(struct core_context *c, uint32_t count, uint32_t near, float (*weight)(uint32_t)) {
+    uint32_t rows = list_rows(count);
+    float sum = 0;
+    c->count = count;
+    c->summed[0] = 0;
+    for (uint32_t i = 0; i < near; i++) {
+        c->near_entry[i] = i;
+        c->summed[i + 1] = c->summed[i] + weight(i);
+    }
+    for (uint32_t column = 0; column < 16; column++) {
+        float down = 0;
+        c->column[0][column] = sum;
+        for (uint32_t row = 0; row < rows; row++) {
+            uint32_t i = column * rows + row;
+            c->far[0][row][column] = down;
+            down += i >= near && i < count ? weight(i) : 0;
+        }
+        c->far[0][rows][column] = down;
+        sum += down;
+    }
+    c->column[0][16] = sum;
+}
+
+static float uneven(uint32_t i) { return 0.1f + (float)(i * 37 % 11); }
+
 static void rays_have_room(void **state) {
+    static struct core_context context;
+    struct core_context *ctx = &context;
     for (uint32_t rays = 1; rays <= RAYS; rays++)
-        for (size_t i = 0; i < sizeof(roundings) / sizeof(*roundings); i++) {
-            float summed[ENTRIES + 1];
-            uint32_t drawn = 0;
-            double times[2 * RAYS] = { 0 }, all = 0;
-            const struct core_context context = { summed, &drawn, 2 * rays, times }, *ctx = &context;
-            list_sums sums = { .all = 0, .bright = 0 };
-            summed[0] = 0;
-            for (uint32_t k = 0; k < ENTRIES; k++)
-                summed[k + 1] = sums.all += 0.1f + (float)(k * 37 % 11);
-            float n = list_draws(sums, (float)rays, 0.01f, roundings[i]);
-            uint32_t made = list_share_out(PASS sums, ENTRIES, n, 1 - roundings[i]);
+        for (size_t i = 0; i < 3 * sizeof(roundings) / sizeof(*roundings); i++) {
+            uint32_t near = i % 3 * (ENTRIES / 2);
+            float rounding = roundings[i / 3];
+            double all = 0;
+            make_weights(ctx, ENTRIES, near, uneven);
+            list_sums sums = { .all = ctx->summed[near] + ctx->column[0][16] };
+            float n = list_draws(sums, (float)rays, 0.01f, rounding);
+            ctx->room = 2 * rays;
+            uint32_t made = list_share_out(PASS sums.all, near, 0, list_rows(ENTRIES), n, 1 - rounding);
             for (uint32_t k = 0; k < made; k++)
-                all += times[k];
-            assert_true(made <= 2 * rays && made == drawn && all == (double)n);
+                all += (double)ctx->drawn[k].times;
+            assert_true(made <= 2 * rays && made == ctx->rays && all == (double)n);
         }
 }
+
+static float some_empty(uint32_t i) { return i % 3 == 1 ? (float)(1 + i % 5) : 0; }
 
 /* Entries without a weight are never drawn, at the ends neither, and a goal past the end is of the last one with some.
  */
 static void searched(void **state) {
-    float summed[ENTRIES + 1];
-    const struct core_context context = { .summed = summed }, *ctx = &context;
-    for (uint32_t count = 1; count <= ENTRIES; count += 1 + count / 7) {
-        float end = 0;
-        uint32_t last = 0;
-        for (uint32_t k = 0; k < count; k++) {
-            bool some = k % 3 == 1 || count < 3;
-            summed[k] = end;
-            end += some ? (float)(1 + k % 5) : 0;
-            last = some ? k : last;
-        }
-        summed[count] = end;
+    static struct core_context context;
+    struct core_context *ctx = &context;
+    for (uint32_t count = 2; count <= ENTRIES; count += 1 + count / 7) {
+        uint32_t rows = list_rows(count), last = (count - 2) / 3 * 3 + 1;
+        float *const s = ctx->summed, (*const far)[16] = ctx->far[0];
+        make_weights(ctx, count, count, some_empty);
+        float end = s[count];
         for (float goal = 0; goal < end; goal += 0.5f) {
-            u32 entry = list_entry_at(PASS count, end, goal);
-            assert_true(entry < count && summed[entry] <= goal && goal < summed[entry + 1]);
+            list_drawn d = near_at(PASS count, end, goal);
+            assert_true(s[d.entry] <= goal && goal < s[d.entry + 1]);
+            assert_true(d.weighed == some_empty(d.entry));
         }
-        assert_int_equal(list_entry_at(PASS count, end, end), last);
-        assert_int_equal(list_entry_at(PASS count, end, 1.001f * end), last);
+        assert_int_equal(near_at(PASS count, end, end).entry, last);
+        assert_int_equal(near_at(PASS count, end, 1.001f * end).entry, last);
+        make_weights(ctx, count, 0, some_empty);
+        assert_true(ctx->column[0][16] == end);
+        for (float goal = 0; goal < end; goal += 0.5f) {
+            list_drawn d = far_entry_at(PASS 0, rows, end, goal);
+            uint32_t column = d.entry / rows, row = d.entry % rows;
+            float rest = goal - ctx->column[0][column];
+            assert_true(d.entry < count && far[row][column] <= rest && rest < far[row + 1][column]);
+            assert_true(d.weighed == some_empty(d.entry));
+        }
+        assert_int_equal(far_entry_at(PASS 0, rows, end, end).entry, last);
+        assert_int_equal(far_entry_at(PASS 0, rows, end, 1.001f * end).entry, last);
     }
 }
 

@@ -1,7 +1,7 @@
 /* core/presampled.h: candidates that blocks of pixels share. What chooses is near to the target, and 0 only where the
  * target is; each sample of a subset is as probable as the other for each pixel; and what is chosen is divided by the
  * very weight that chose it, near and far lights of all kinds mixed. */
-#include "no_lists.h"
+#include "no_rays.h"
 #include "core_test.h"
 
 #include "core/presampled.h"
@@ -27,22 +27,6 @@ FN void weighed_store(CTX int i, real sum) { MINE->weighed[i] = sum; }
 FN real weighed_load(CTX int i) { return ctx->weighed[i]; }
 FN real weighed_at(CTX u32 i) { return ctx->weighed[i]; }
 FN pick pick_load(CTX int i) { return (pick){ (u32)i, ctx->inverse[i] }; }
-/* Of lists, which nothing here has. */
-FN light light_splat(CTX u1 i) { return light_load(PASS i); }
-FN list_entry entry_load(CTX u1 i) { return (list_entry){ 0, 0 }; }
-FN u32 entry_light(CTX u32 i) { return 0; }
-FN u32 entry_lights(CTX u1 first, int l, u1 count) { return 0; }
-FN real entry_weight(CTX u32 i) { return 0; }
-FN void sketch_store(CTX u1 first, int l, list_sketch k) {}
-FN list_sketch sketch_load(CTX u1 i) { return (list_sketch){ 0 }; }
-FN u1 sketch_shape(CTX u1 i) { return 0; }
-FN list_prior prior_load(CTX u1 i) { return (list_prior){ 0 }; }
-FN void summed_store(CTX u1 i, real sum) {}
-FN real summed_at(CTX u32 i) { return 0; }
-FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {}
-FN real drawn_times(CTX u1 ray) { return 0; }
-FN real found_p(CTX u1 ray) { return 0; }
-FN real found_w(CTX u1 ray) { return 0; }
 /* One profile: its head, and a table of one step, which sends more ahead than aside and nothing back. */
 FN profile_cell profile_load(CTX u32 place) {
     if (place == 0)

@@ -127,7 +127,7 @@ static noc_scene *swarm(void) {
 }
 
 /* Lights that are near on one side of a tile and far on the other (core/list_sketch.h): large windows and discs whose
- * distance of five radii ends on the floor and on a wall, beside small lights that are far everywhere, points, spots
+ * distance of three radii ends on the floor and on a wall, beside small lights that are far everywhere, points, spots
  * and profiles. The floor is glossy, so that for it near goes further; the wall is matte. Boards stand in the light. */
 static noc_scene *border(void) {
     noc_scene *s = noc_scene_create(NULL);
@@ -200,7 +200,7 @@ static const config unbiased[] = {
     { "pairwise + rays in time, lists of 12, 4 rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true,
       .rays = true, .reuse = true, .list = 12, .shadow_rays = 4 },
     { "mis + rays, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true,
-      .reuse = true, .list = 12, .shadow_rays = 3 },
+      .reuse = true, .list = 12, .shadow_rays = 3, .times = 4 },
     { "mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true, .reuse = true },
     { "mis + rays, spatial", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .spatial = true, .rays = true, .reuse = true },
     { "mis + rays, 2 passes", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true,

@@ -141,28 +141,58 @@ typedef struct group_record {
 typedef struct list_scratch {
     light_list list;
     ALIGNED float scores[LIST_GROUPS + 1][16];
-    ALIGNED float sketches[SKETCH_WORDS - 1][LIST_ROOM]; /* fields of list_sketch, and its shape */
-    uint32_t shapes[LIST_ROOM];
+    ALIGNED uint32_t sketches[SKETCH_WORDS][LIST_ROOM]; /* fields of list_sketch by row and place: core/list_faces.h */
     float sums[LIST_GROUPS];
     group_record groups[LIST_GROUPS];
     patch_record patches[LIST_PATCHES];
     uint32_t chosen[LIST_CHOSEN];
 } list_scratch;
 
-/* What is expected of a list's entries, and so how they are weighed. */
+/* What is expected of a list's entries by row and place, and so how they are weighed; 0 where there is none. */
 typedef struct priors {
-    float share[LIST_ROOM];  /* weight * pull */
-    float expect[LIST_ROOM]; /* weight * visibility */
+    ALIGNED float share[LIST_ROOM]; /* weight * pull */
+    float expect[LIST_ROOM];        /* weight * visibility */
 } priors;
+
+static inline void set_prior(priors *to, uint32_t rows, uint32_t entry, float share, float expect) {
+    uint32_t at = entry % rows * 16 + entry / rows;
+    to->share[at] = share;
+    to->expect[at] = expect;
+}
+
+/* What the pixels of a block see: struct surf, and how far. */
+typedef struct seen_block {
+    ALIGNED float p[3][BLOCK];
+    float n[3][BLOCK], wo[3][BLOCK], albedo[3][BLOCK], f0[BLOCK], alpha[BLOCK], depth[BLOCK];
+} seen_block;
+
+/* What a face of a block weighs: core/list_faces.h. */
+typedef struct face_weights {
+    ALIGNED float far[LIST_ROWS + 2][16]; /* sums down the columns, of the rows before; and what is expected */
+    float column[17];                     /* sums of the columns before */
+    uint32_t near[LIST_ROWS];             /* bits of places */
+    uint32_t pixels;
+} face_weights;
+
+/* An entry that is near for some pixels of a block. */
+typedef struct near_record {
+    uint32_t entry;
+    uint16_t place, pixels;
+} near_record;
 
 /* What the pixels of a block ask for over their tile's list: core/list_rays.h. */
 typedef struct list_asked {
-    ALIGNED float summed[LIST_ROOM + 1][BLOCK]; /* what chooses entries, of all before each */
-    float all[BLOCK], bright[BLOCK];            /* list_sums */
+    seen_block seen;
+    face_weights face[LIST_FACES];
+    near_record near[LIST_ROOM];
+    ALIGNED float summed[LIST_ROOM + 1][BLOCK]; /* what chooses near entries, of all before each */
+    uint32_t face_of[BLOCK];                    /* a pixel's face */
+    float all[BLOCK], bright[BLOCK];            /* list_sums, of near and far entries */
     float n[BLOCK];                             /* draws */
     int most;                                   /* rays of a lane at most */
     uint32_t entry[MOST_SHADOW_RAYS][BLOCK];    /* of a lane's ray */
     float times[MOST_SHADOW_RAYS][BLOCK];       /* drawn so often; 0: no such ray */
+    float weighed[MOST_SHADOW_RAYS][BLOCK];
 } list_asked;
 
 /* Rays of one block, a lane each. */

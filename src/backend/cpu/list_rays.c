@@ -31,11 +31,11 @@ static int find_priors(const stage_run *run, const gblock *g, uint32_t lanes, co
     tile_cell *c = &t->cell[t->cells];
     const noc_cell *known = learn ? noc_learned_find(run->s->learned, key) : NULL;
     c->key = key;
+    uint32_t rows = (list->count + 15) / 16;
+    memset(&c->priors, 0, sizeof(c->priors));
     for (uint32_t i = 0; i < list->count; i++) {
-        float visibility = noc_cell_visibility(known, list->light[i]);
-        list_prior b = list_prior_of(list->weight[i], visibility);
-        c->priors.share[i] = b.share;
-        c->priors.expect[i] = b.expect;
+        list_prior b = list_prior_of(list->weight[i], noc_cell_visibility(known, list->light[i]));
+        set_prior(&c->priors, rows, i, b.share, b.expect);
         c->asked[i] = c->seen[i] = 0;
     }
     return t->cells++;
