@@ -42,7 +42,7 @@ static const config unbiased[] = {
     { "mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true, .reuse = true,
       .lux = true },
     { "mis + rays, power", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true,
-      .reuse = true, .picker = NOC_CANDIDATES_POWER, .lux = true },
+      .reuse = true, .picker = NOC_CANDIDATES_POWER, .lux = true, .times = 8 },
     { "pairwise + rays, influence", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,
       .rays = true, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE, .lux = true },
     { "pairwise + rays, light-bvh", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,
