@@ -1,5 +1,6 @@
 /* A view: its buffers, the scratch of its threads, the picture that is read from it. */
 #include "backend/cpu/cpu.h"
+#include "core/presample_limits.h"
 
 static void free_buffers(frame_buffers *b) {
     for (int i = 0; i < 2; i++)
@@ -156,7 +157,8 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
     out->structure_bytes = noc_cpu_rays_bytes(s->world);
     out->learned_bytes = s->learned ? s->learned->count * sizeof(*s->learned->cells) : 0;
     out->memory_bytes = out->picture_bytes + out->structure_bytes + out->learned_bytes + noc_cpu_light_bytes(s->world) +
-                        noc_cpu_past_bytes(s) + s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels);
+                        noc_cpu_past_bytes(s) + s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels) +
+                        (s->samples ? PRESAMPLES / BLOCK * sizeof(*s->samples) : 0);
     out->path = s->kernels->name;
 }
 
