@@ -219,6 +219,7 @@ class Page(Opened):
         page.evaluate('viewer.edit(0)')
         page.evaluate("viewer.set('smooth', 'off', 0); viewer.set('smooth', 'on', 1)")
         page.wait("viewer.state.panes[0].values.smooth === 'false'")
+        rests(page)
         page.evaluate("(viewer.marks = new Set(), viewer.on('shown', () => viewer.marks.add("
                       "document.querySelector('#status .smoothed').textContent)), 0)")
         x, y = page.middle('.divider')
