@@ -80,18 +80,19 @@ static bool apart(const double a[3][2], const double b[3][2]) {
     for (int of = 0; of < 2; of++)
         for (int i = 0; i < 3; i++) {
             const double(*t)[2] = of ? b : a;
-            double x = t[(i + 1) % 3][1] - t[i][1], y = t[i][0] - t[(i + 1) % 3][0], length = hypot(x, y);
+            double x = t[(i + 1) % 3][1] - t[i][1], y = t[i][0] - t[(i + 1) % 3][0];
+            double gap = WINDOW_GAP_MM / 1000 * sqrt(x * x + y * y); /* d are as many times as long, too */
             double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
-            if (!(length > 0))
+            if (!(gap > 0))
                 continue;
             for (int k = 0; k < 3; k++) {
-                double d[2] = { (a[k][0] * x + a[k][1] * y) / length, (b[k][0] * x + b[k][1] * y) / length };
+                double d[2] = { a[k][0] * x + a[k][1] * y, b[k][0] * x + b[k][1] * y };
                 for (int j = 0; j < 2; j++) {
                     lo[j] = NOC_MIN(lo[j], d[j]);
                     hi[j] = NOC_MAX(hi[j], d[j]);
                 }
             }
-            if (lo[0] - hi[1] > WINDOW_GAP_MM / 1000 || lo[1] - hi[0] > WINDOW_GAP_MM / 1000)
+            if (lo[0] - hi[1] > gap || lo[1] - hi[0] > gap)
                 return true;
         }
     return false;
