@@ -25,6 +25,8 @@ struct list_ray {
     real v;
     real w; /* unbiased contribution weight W of what it finds; 0: there is no such ray */
     real p; /* target there, unshadowed */
+    light_sample at;
+    v3 brings; /* what the surface reflects of it, unshadowed, cd/m2; times w, its part of the pixel's colour */
 };
 
 /* An entry that was drawn so often, and what it was weighed. */
@@ -204,14 +206,17 @@ FN u32 list_share_out(CTX real all, u1 near, u32 face, u1 rows, real n, real sta
     return rays;
 }
 
-/* The ray to an entry that was drawn. There is none to a place that brings nothing. */
-FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, list_drawn d) {
+/* The ray to an entry that was drawn, whose light is l. There is none to a place that brings nothing. */
+FN list_ray list_ask(CTX surf s, list_sums sums, real n, u32 key, list_drawn d, light l) {
     list_ray r;
     EXACT real w = d.times * sums.all / (n * d.weighed) * entry_weight(PASS d.entry);
     r.light = entry_light(PASS d.entry);
     r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), d.entry);
     r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), d.entry);
-    r.p = target(PASS s, light_load(PASS r.light), r.u, r.v);
+    r.at = shining_sample(PASS l, s.p, r.u, r.v);
+    lobes f = reflect_lobes(s, r.at.wi);
+    r.p = target_of(s, r.at, f);
+    r.brings = tint3(reflect_both(s, f), r.at.le);
     r.w = sel(and_(d.times > K(0.0f), r.p > K(0.0f)), w, K(0.0f));
     return r;
 }

@@ -29,9 +29,8 @@ FN real max_abs3(v3 a) { return max_(abs_(a.x), max_(abs_(a.y), abs_(a.z))); }
 /* How far to stand off a surface where coordinates are as large as that, m. */
 FN real ray_offset(real largest, real least) { return max_(least, largest * K(4.76837158203125e-7f)); }
 
-/* n: unit normal of the receiving surface at p, on the side that is lit. */
-FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
-    light_sample s = sample_light(l, p, u, v);
+/* n: unit normal of the receiving surface at p, on the side that is lit. s: a sample of the light as seen from p. */
+FN segment segment_to(v3 p, v3 n, light l, light_sample s, real least) {
     v3 x = add3(p, mul3(s.wi, s.dist));
     mask point = is_point(l);
     mask round = l.kind == KU(LIGHT_SPHERE);
@@ -68,6 +67,10 @@ FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
     r.o = V3(ox, oy, oz);
     r.d = V3(dx, dy, dz);
     return r;
+}
+
+FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
+    return segment_to(p, n, l, sample_light(l, p, u, v), least);
 }
 
 #endif

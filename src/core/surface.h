@@ -88,18 +88,14 @@ FN lobes reflect_lobes(surf s, v3 wi) {
 }
 
 /* f_r * cos(theta), 1/sr. */
-FN v3 reflect(surf s, v3 wi) {
-    lobes f = reflect_lobes(s, wi);
-    return add3(mul3(s.albedo, f.diffuse), fill3(f.gloss));
-}
+FN v3 reflect_both(surf s, lobes f) { return add3(mul3(s.albedo, f.diffuse), fill3(f.gloss)); }
+FN v3 reflect(surf s, v3 wi) { return reflect_both(s, reflect_lobes(s, wi)); }
 
 /* Unshadowed reflected radiance over the unit square of one light, linear rgb, cd/m2. */
 FN v3 reflected(surf s, light_sample l) { return tint3(reflect(s, l.wi), l.le); }
 
-/* The target p_hat: its luminance. NaN and what overflows count as 0. */
-FN real target(CTX surf s, light l, real u, real v) {
-    light_sample ls = shining_sample(PASS l, s.p, u, v);
-    lobes f = reflect_lobes(s, ls.wi);
+/* The target p_hat of a sample of a light: its luminance. NaN and what overflows count as 0. */
+FN real target_of(surf s, light_sample ls, lobes f) {
     EXACT real p = luminance(tint3(s.albedo, ls.le)) * f.diffuse;
     mask shiny = f.gloss > K(0.0f);
     if (ANY(shiny)) {
@@ -107,6 +103,11 @@ FN real target(CTX surf s, light l, real u, real v) {
         p = sel(shiny, both, p);
     }
     return sel(and_(p > K(0.0f), p < K(1e30f)), p, K(0.0f));
+}
+
+FN real target(CTX surf s, light l, real u, real v) {
+    light_sample ls = shining_sample(PASS l, s.p, u, v);
+    return target_of(s, ls, reflect_lobes(s, ls.wi));
 }
 
 #endif

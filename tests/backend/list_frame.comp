@@ -377,7 +377,7 @@ void share_pixel(surf s, uint near, uint count, uint x, uint y) {
     for (uint k = 0u; k < rays; k++) {
         list_drawn d = list_drawn(wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k),
                                   wf(ray_answer(k, uint(RAY_WEIGHED))));
-        list_ray r = list_ask(s, sums, n, key, d);
+        list_ray r = list_ask(s, sums, n, key, d, light_load(entry_light(d.entry)));
         bool seen = frame_sees(pixel, k);
         r.w = seen ? r.w : 0.0;
         put(ray_answer(k, uint(RAY_LIGHT)), r.light);
@@ -385,7 +385,7 @@ void share_pixel(surf s, uint near, uint count, uint x, uint y) {
         put(ray_answer(k, uint(RAY_V)), r.v);
         put(ray_answer(k, uint(RAY_W)), r.w);
         put(ray_answer(k, uint(RAY_P)), r.p);
-        v3 c = mul3(reflected(s, shining_sample(light_load(r.light), s.p, r.u, r.v)), r.w);
+        v3 c = mul3(r.brings, r.w);
         if (seen && abs(c.x) + abs(c.y) + abs(c.z) < 1e30)
             colour = add3(colour, c);
     }

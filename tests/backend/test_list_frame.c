@@ -124,6 +124,7 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
                          int y, const priors *b, uint32_t *out) {
     list_asked *asked = noc_alloc_large(1, sizeof(*asked));
     ray_draw draws[MOST_SHADOW_RAYS];
+    rayblock way;
     uint32_t lanes = lanes_with_surface(g), shown[BLOCK], kept[BLOCK];
     float kept_w[BLOCK];
     cblock colour = { 0 };
@@ -133,13 +134,13 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
     k->list_show(ctx, x, y, asked, shown);
     for (int i = 0; i < asked->most; i++) {
         uint32_t seen = 0;
-        k->list_ray(ctx, g, x, y, asked, i, &draws[i].r);
+        k->list_ray(ctx, g, x, y, asked, i, &draws[i].r, &draws[i].brings, &way);
         for (int l = 0; l < BLOCK; l++) {
             uint32_t pixel = (uint32_t)((y + (l >> 2)) * W + x + (l & 3));
             seen |= (uint32_t)(asked->times[i][l] > 0 && frame_sees(pixel, (u32)i)) << l;
             draws[i].r.w[l] = seen >> l & 1 ? draws[i].r.w[l] : 0;
         }
-        k->shade(&t->ctx, g, &draws[i].r, seen, &colour);
+        k->shade_known(&draws[i].brings, draws[i].r.w, seen, &colour);
     }
     k->list_keep(ctx, x, y, draws, asked->most, kept, kept_w);
     for (int l = 0; l < BLOCK; l++) {

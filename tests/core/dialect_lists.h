@@ -274,6 +274,8 @@ FN real found_w(CTX u1 ray) { return dialect_found[ray].w; }
 
 /* ---- pixels ---- */
 
+FN light drawn_light(CTX list_drawn d) { return light_load(PASS entry_light(PASS d.entry)); }
+
 /* Shares rays out anew; returns a number of all that were drawn. */
 FN u32 draw_rays(CTX u32 item, int slot, real all_of, real n, real start) {
     for (int k = 0; k < PIXEL_RAYS; k++) {
@@ -321,10 +323,10 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, LISTS_FIRST + 14, draw_rays(PASS item, LISTS_FIRST + 13, sums.all, n, rng(key, KU(5004u))));
     for (int k = 0; k < PIXEL_RAYS; k++) {
         mask blocked = rng(key, KU(5010u + U32(k))) < K(0.4f);
-        dialect_found[k] = list_ask(PASS s, sums, n, key, dialect_drawn[k]);
+        dialect_found[k] = list_ask(PASS s, sums, n, key, dialect_drawn[k], drawn_light(PASS dialect_drawn[k]));
         dialect_found[k].w = sel(blocked, K(0.0f), dialect_found[k].w);
     }
-    list_ray one = list_ask(PASS s, sums, n, key, dialect_drawn[1]);
+    list_ray one = list_ask(PASS s, sums, n, key, dialect_drawn[1], drawn_light(PASS dialect_drawn[1]));
     put_u32(PASS item, LISTS_FIRST + 15, one.light);
     put_real(PASS item, LISTS_FIRST + 16, one.u);
     put_real(PASS item, LISTS_FIRST + 17, one.v);

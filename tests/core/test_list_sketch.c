@@ -239,7 +239,7 @@ static void mean_over_starts(bool glossy, float wide, float turn, double *off, d
                     list_share_out(PASS sums.all, entries, face, rows, 5, ((float)k + .5f) / STARTS);
                     for (u32 i = 0; i < ctx->rays; i++) {
                         list_drawn *one = &ctx->drawn[i];
-                        list_ray r = list_ask(PASS s, sums, 5, key, *one);
+                        list_ray r = list_ask(PASS s, sums, 5, key, *one, ctx->light[one->entry]);
                         double brings = one->entry % 3 ? (double)(r.p * r.w) / STARTS : 0;
                         float prior = list_prior_of(ctx->weight[one->entry], ctx->visibility[one->entry]).share;
                         have += brings;

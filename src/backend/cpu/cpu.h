@@ -342,9 +342,10 @@ static inline size_t noc_cpu_source_places(int aov) {
 static inline size_t noc_cpu_source_entries(int aov) {
     return 2 * noc_cpu_source_places(aov) + (aov == NOC_AOV_INFLUENTIAL);
 }
-/* The samples' light goes into a block's colour, and into the views of where light comes from. Returns the lanes that
- * were dropped. */
-uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, uint32_t lanes, size_t block);
+/* The samples' light goes into a block's colour, and into the views of where light comes from. brings: what the surface
+ * reflects of each sample, unshadowed; NULL: not known. Returns the lanes that were dropped. */
+uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, const cblock *brings,
+                               uint32_t lanes, size_t block);
 /* The same of the sky's rays, of which each is so much of its pixel's. */
 uint32_t noc_cpu_shade_sky(const stage_run *run, const gblock *g, const rayblock *rays, const float *share,
                            uint32_t lanes, size_t block);

@@ -198,6 +198,7 @@ typedef struct list_asked {
 /* Rays of one block, a lane each. */
 typedef struct ray_draw {
     rblock r;             /* w: W, 0 where the ray was blocked; m is not used */
+    cblock brings;        /* what the surface reflects of the sample, unshadowed */
     uint8_t entry[BLOCK]; /* of the list */
     int block;            /* of the tile */
     int rays;             /* the block has so many of them, one after the other */
@@ -243,7 +244,7 @@ typedef struct kernels {
     void (*list_share)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, float brightness,
                        const priors *priors, list_asked *out);
     void (*list_ray)(const struct core_context *ctx, const gblock *g, int x, int y, list_asked *asked, int k,
-                     rblock *out);
+                     rblock *out, cblock *brings, rayblock *way);
     void (*list_show)(const struct core_context *ctx, int x, int y, list_asked *asked, uint32_t ray[BLOCK]);
     void (*list_keep)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,
                       uint32_t ray[BLOCK], float w[BLOCK]);
@@ -276,6 +277,8 @@ typedef struct kernels {
     void (*reuse_end)(const struct core_context *ctx, combining *b, rblock *out);
     /* rgb += reflected * w for `lanes`; returns the lanes whose sum was not finite: those keep what they had. */
     uint32_t (*shade)(const struct core_context *ctx, const gblock *g, const rblock *r, uint32_t lanes, cblock *out);
+    /* The same, where what is reflected is known. */
+    uint32_t (*shade_known)(const cblock *brings, const float w[BLOCK], uint32_t lanes, cblock *out);
     /* The lights' unshadowed luminance at each lane, then entries placed over it: see reference.c. */
     void (*reference)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
                       reference_scratch *scratch);

@@ -78,6 +78,15 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
     return dropped;
 }
 
+static uint32_t shade_known(const cblock *brings, const float w[BLOCK], uint32_t lanes, cblock *out) {
+    uint32_t dropped = 0;
+    for (int l = 0; l < BLOCK; l += LANES) {
+        v3 c = V3(rload(brings->rgb[0] + l), rload(brings->rgb[1] + l), rload(brings->rgb[2] + l));
+        dropped |= add_colour(out, l, mul3(c, rload(w + l)), lanes);
+    }
+    return dropped;
+}
+
 /* ---- sky ---- */
 
 static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number,
@@ -169,6 +178,7 @@ const kernels KERNELS = {
     .reuse_ask = combine_ask,
     .reuse_end = combine_end,
     .shade = shade,
+    .shade_known = shade_known,
     .reference = reference,
     .reference_place = reference_places,
     .sky_rays = sky_rays,

@@ -53,13 +53,12 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     d->rays = t->asked.most;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
-    run->k->list_ray(ctx, g, x, y, &t->asked, k, &d->r);
+    run->k->list_ray(ctx, g, x, y, &t->asked, k, &d->r, &d->brings, &s->rays);
     for (int l = 0; l < BLOCK; l++) {
         s->valid |= (uint32_t)(d->r.w[l] > 0) << l;
         s->light[l] = d->r.light[l];
         d->entry[l] = (uint8_t)t->asked.entry[k][l];
     }
-    run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
 }
 
 /* The reservoir that stands for the block in views of the candidates: one of the draws, at random. */
@@ -218,8 +217,9 @@ void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];
         if (t->segments[i].unoccluded)
-            w->dropped += (uint64_t)__builtin_popcount(
-                noc_cpu_shade_samples(run, &g[block], &t->draws[i].r, t->segments[i].unoccluded, block));
+            w->dropped +=
+                (uint64_t)__builtin_popcount(noc_cpu_shade_samples(run, &g[block], &t->draws[i].r, &t->draws[i].brings,
+                                                                   t->segments[i].unoccluded, block));
     }
 }
 

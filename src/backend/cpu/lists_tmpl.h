@@ -217,19 +217,25 @@ static void list_share(const struct core_context *tile, const gblock *g, uint32_
 }
 
 static void list_ray_of(const struct core_context *tile, const gblock *g, int x, int y, list_asked *asked, int k,
-                        rblock *out) {
+                        rblock *out, cblock *brings, rayblock *way) {
     struct core_context block = *tile, *ctx = &block;
     ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
         ctx->at.lane = l;
+        surf s = seen_surf(&asked->seen, l);
         list_drawn d = { uload(asked->entry[k] + l), rload(asked->times[k] + l), rload(asked->weighed[k] + l) };
-        list_ray r = list_ask(ctx, seen_surf(&asked->seen, l), sums_load(asked, l), rload(asked->n + l),
-                              key_of(ctx, x, y, l), d);
+        light to = light_load(ctx, entry_light(ctx, d.entry));
+        list_ray r = list_ask(ctx, s, sums_load(asked, l), rload(asked->n + l), key_of(ctx, x, y, l), d, to);
+        segment between = segment_to(s.p, s.n, to, r.at, K(ctx->ray_offset));
         ustore(out->light + l, r.light);
         rstore(out->u + l, r.u);
         rstore(out->v + l, r.v);
         rstore(out->w + l, r.w);
         rstore(out->p + l, r.p);
+        rstore(brings->rgb[0] + l, r.brings.x);
+        rstore(brings->rgb[1] + l, r.brings.y);
+        rstore(brings->rgb[2] + l, r.brings.z);
+        ray_store(way, l, between.o, between.d);
     }
 }
 

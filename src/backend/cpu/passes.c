@@ -283,7 +283,8 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (uint32_t i = 0; i < n; i++)
-            dropped |= noc_cpu_shade_samples(run, g, &r[i], rays ? w->batch.blocks[i].unoccluded : lanes[i], block->at);
+            dropped |=
+                noc_cpu_shade_samples(run, g, &r[i], NULL, rays ? w->batch.blocks[i].unoccluded : lanes[i], block->at);
     }
     return dropped;
 }
@@ -318,8 +319,8 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
             for (int l = 0; l < BLOCK; l++)
                 part.w[l] *= share[i][l];
         }
-        w->dropped +=
-            (uint64_t)__builtin_popcount(noc_cpu_shade_samples(run, &g[at], share ? &part : &r[at], lanes[i], at));
+        w->dropped += (uint64_t)__builtin_popcount(
+            noc_cpu_shade_samples(run, &g[at], share ? &part : &r[at], NULL, lanes[i], at));
     }
 }
 

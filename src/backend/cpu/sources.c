@@ -99,16 +99,17 @@ static uint32_t measured(const float *lux) {
     return lanes;
 }
 
-uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, uint32_t lanes, size_t block) {
+uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, const cblock *brings,
+                               uint32_t lanes, size_t block) {
     float(*lux)[BLOCK] = run->s->b.aovs.made[NOC_AOV_ILLUMINANCE];
+    cblock alone = { 0 }, *out = &run->s->b.colour[block];
     if (lux)
         run->k->samples_lux(&run->ctx, g, r, lanes & measured(lux[block]), lux[block]);
     if (notes(run)) { /* on its own, so that what the samples add is told to the last bit */
-        cblock alone = { 0 };
         run->k->shade(&run->ctx, g, r, lanes, &alone);
         note(run, r->light, &alone, lanes, block);
     }
-    return run->k->shade(&run->ctx, g, r, lanes, &run->s->b.colour[block]);
+    return brings ? run->k->shade_known(brings, r->w, lanes, out) : run->k->shade(&run->ctx, g, r, lanes, out);
 }
 
 uint32_t noc_cpu_shade_sky(const stage_run *run, const gblock *g, const rayblock *rays, const float *share,
