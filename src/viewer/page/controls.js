@@ -181,7 +181,7 @@ const KINDS = { bool, switch: choice, choice, int: numeric, real: numeric, text,
 
 // root: the row. change(text) is called at most once an animation frame.
 export class Control {
-    #changed = 0;
+    #changed = -Infinity; // by hand, ms
     #frame = 0;
     #next = null;
 
@@ -248,7 +248,7 @@ export class Control {
 
     #say(value, settled = false) {
         this.value = value;
-        this.#changed = settled ? 0 : performance.now();
+        this.#changed = settled ? -Infinity : performance.now();
         this.#next = value;
         if (!this.#frame)
             this.#frame = requestAnimationFrame(() => {
