@@ -105,9 +105,10 @@ static void share_tile(cpu_view *e, const struct core_context *frame, const gblo
     priors *of = &lists->rays.cell[0].priors;
     ctx.at.lists = &lists->build;
     e->kernels->list_fill(&ctx);
-    for (uint32_t i = 0; i < list->count; i++) {
+    for (uint32_t i = 0, at = 0; i < list->count; i++, at = next_place(at, list->count)) {
         list_prior b = list_prior_of(list->weight[i], LEARNED_UNKNOWN);
-        set_prior(of, (list->count + 15) / 16, i, b.share, b.expect);
+        of->share[at] = b.share;
+        of->expect[at] = b.expect;
     }
     for (int i = 0; i < blocks; i++)
         if (lanes[i] && list->count)

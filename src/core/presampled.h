@@ -19,10 +19,6 @@
 #include "core/list_sketch.h"
 #include "core/presample_limits.h"
 
-#define PRESAMPLE_FEW                                                                                                  \
-    32u /* candidates: a tile has 16 samples for each, and as many as for 32 where there are fewer                     \
-         */
-
 /* A sample of a light, as surfaces look at it from afar. */
 struct presample {
     v3 x;        /* its place, or a sphere's middle */

@@ -187,9 +187,10 @@ static uint32_t *answer(const trial *t, const kernels *k) {
             lanes[i] = lanes_with_surface(g[i] = block_of(t, number, i));
         k->list_build(&ctx, g, lanes, 16, tail_start(SEED, (u32)number, t->frame.constants.index), s);
         k->list_fill(&ctx);
-        for (uint32_t i = 0; i < s->list.count; i++) {
+        for (uint32_t i = 0, at = 0; i < s->list.count; i++, at = next_place(at, s->list.count)) {
             list_prior one = list_prior_of(s->list.weight[i], t->visibility[s->list.light[i]]);
-            set_prior(&b, (s->list.count + 15) / 16, i, one.share, one.expect);
+            b.share[at] = one.share;
+            b.expect[at] = one.expect;
         }
         to[ANSWER_COUNT] = s->list.count;
         to[ANSWER_COPIES] = s->list.copies;

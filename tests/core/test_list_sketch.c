@@ -7,47 +7,7 @@
 
 enum { ENTRIES = 24 };
 
-/* One profile: its head, and a table of one step, which sends more ahead than aside and nothing back. */
-FN profile_cell profile_load(CTX u32 place) {
-    if (place == 0)
-        return (profile_cell){ real_of_bits(1), real_of_bits(1u << 16 | 1), 4, .25f };
-    return (profile_cell){ .4f, .4f, .1f, .1f };
-}
-
-/* ---- lights and surfaces ---- */
-
-static light any_light(dice *d, u32 kind) {
-    light l = { .kind = kind, .e = V3((float)uniform(d, 1, 50), (float)uniform(d, 1, 50), (float)uniform(d, 1, 50)) };
-    l.a = random_in_box(d, 1);
-    l.b = random_in_box(d, 1);
-    if (kind == LIGHT_DISC) {
-        v3 a = random_direction(d), n = random_direction(d);
-        l.radius = (float)uniform(d, .1, 1);
-        l.a = mul3(normalised(cross3(a, n)), l.radius);
-        l.b = mul3(normalised(cross3(l.a, a)), l.radius);
-    } else if (kind == LIGHT_SPHERE) {
-        l.radius = (float)uniform(d, .05, 1);
-    } else if (kind == LIGHT_SPOT) {
-        l.a = mul3(random_direction(d), 2);
-        l.b = V3(-.5f, 0, 0);
-    } else if (kind != LIGHT_POINT) {
-        v3 c = add3(l.a, l.b), e = sub3(l.a, l.b);
-        float longest = max_(max_(dot3(l.a, l.a), dot3(l.b, l.b)), dot3(e, e));
-        l.radius = sqrtf(kind == LIGHT_TRIANGLE ? longest : max_(longest, dot3(c, c)));
-    }
-    l.flags = kind != LIGHT_SPHERE && uniform(d, 0, 1) < .3 ? LIGHT_TWO_SIDED : 0;
-    return l;
-}
-
-static surf any_surface(dice *d, bool glossy) {
-    surf s = { .n = random_direction(d), .wo = random_direction(d), .albedo = V3(.5f, .3f, .2f) };
-    double rough = uniform(d, .05, 1);
-    if (dot3(s.n, s.wo) < 0)
-        s.wo = mul3(s.wo, -1);
-    s.alpha = (float)(rough * rough);
-    s.f0 = glossy ? .05f : 0;
-    return s;
-}
+#include "any_light.h"
 
 /* Puts the light's middle so many radii away from the surface (m for a point), now and then where it is seen edge on.
  */
@@ -78,7 +38,7 @@ static ratios look_at_lights(bool glossy, const u32 *kinds, int count) {
     for (int i = 0; i < TRIALS; i++) {
         surf s = any_surface(&d, glossy);
         sketch_surf q = sketch_surf_of(s);
-        light l = any_light(&d, kinds[i % count]);
+        light l = any_light(&d, kinds[i % count], false);
         place_light(&d, &l, s, (double)sqrtf(q.reach) * uniform(&d, .98, 1.1) * (i % 3 ? 1 : 8));
         list_sketch k = sketch_of(l);
         float d2 = sketch_distance2(k, s.p), most = 0;
@@ -140,13 +100,13 @@ static void points(void **state) {
 static void none_of_beams(void **state) {
     (void)state;
     dice d = { 9 };
-    light l = any_light(&d, LIGHT_SPOT);
+    light l = any_light(&d, LIGHT_SPOT, false);
     assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
-    l = any_light(&d, LIGHT_DISC);
+    l = any_light(&d, LIGHT_DISC, false);
     assert_int_equal(sketch_of(l).shape, l.flags ? SKETCH_TWO_SIDED : SKETCH_FLAT);
     l.flags |= 1 << LIGHT_PROFILE;
     assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
-    assert_int_equal(sketch_of(any_light(&d, LIGHT_SPHERE)).shape, SKETCH_ROUND);
+    assert_int_equal(sketch_of(any_light(&d, LIGHT_SPHERE, false)).shape, SKETCH_ROUND);
 }
 
 static void inverse_roots(void **state) {
@@ -167,12 +127,7 @@ static void make_list(struct core_context *ctx, dice *d, surf s) {
     for (u32 i = 0; i < ENTRIES; i++) {
         light *l = &ctx->light[i];
         double radii = i % 4 == 0 ? uniform(d, 0.6, 1.8) : i % 4 == 1 ? 2 : i % 4 == 2 ? (double)sqrtf(q.reach) : 60;
-        *l = any_light(d, i % 6);
-        if (i % 7 == 3 && (l->kind == LIGHT_POINT || l->kind == LIGHT_SPHERE || l->kind == LIGHT_DISC)) {
-            l->a = l->kind == LIGHT_DISC ? l->a : V3(1, 0, 0);
-            l->b = l->kind == LIGHT_DISC ? l->b : V3(0, 1, 0);
-            l->flags |= 1 << LIGHT_PROFILE;
-        }
+        *l = any_light(d, i % 6, i % 7 == 3);
         place_light(d, l, s, radii);
         if (dot3(s.n, sub3(sketch_of(*l).middle, s.p)) < 0)
             l->p = add3(l->p, mul3(s.n, -2 * dot3(s.n, sub3(sketch_of(*l).middle, s.p))));
@@ -281,7 +236,7 @@ static void none_missed(void **state) {
         double wide = uniform(&d, 0, .3);
         ctx->count = ENTRIES;
         for (u32 i = 0; i < ENTRIES; i++) {
-            ctx->light[i] = any_light(&d, i % 5);
+            ctx->light[i] = any_light(&d, i % 5, false);
             ctx->weight[i] = 1;
             place_light(&d, &ctx->light[i], s, uniform(&d, 2, 8));
             if (i % 2) { /* beside the plane of the light */

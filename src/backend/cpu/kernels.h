@@ -154,10 +154,9 @@ typedef struct priors {
     float expect[LIST_ROOM];        /* weight * visibility */
 } priors;
 
-static inline void set_prior(priors *to, uint32_t rows, uint32_t entry, float share, float expect) {
-    uint32_t at = entry % rows * 16 + entry / rows;
-    to->share[at] = share;
-    to->expect[at] = expect;
+/* The place of the entry after the one at that place, in a list of so many entries: core/list_faces.h. */
+static inline uint32_t next_place(uint32_t at, uint32_t count) {
+    return at + 16 < (count + 15) / 16 * 16 ? at + 16 : at % 16 + 1;
 }
 
 /* What the pixels of a block see: struct surf, and how far. */

@@ -31,11 +31,11 @@ static int find_priors(const stage_run *run, const gblock *g, uint32_t lanes, co
     tile_cell *c = &t->cell[t->cells];
     const noc_cell *known = learn ? noc_learned_find(run->s->learned, key) : NULL;
     c->key = key;
-    uint32_t rows = (list->count + 15) / 16;
     memset(&c->priors, 0, sizeof(c->priors));
-    for (uint32_t i = 0; i < list->count; i++) {
+    for (uint32_t i = 0, at = 0; i < list->count; i++, at = next_place(at, list->count)) {
         list_prior b = list_prior_of(list->weight[i], noc_cell_visibility(known, list->light[i]));
-        set_prior(&c->priors, rows, i, b.share, b.expect);
+        c->priors.share[at] = b.share;
+        c->priors.expect[at] = b.expect;
         c->asked[i] = c->seen[i] = 0;
     }
     return t->cells++;

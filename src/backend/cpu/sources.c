@@ -99,17 +99,22 @@ static uint32_t measured(const float *lux) {
     return lanes;
 }
 
+static uint32_t shade(const stage_run *run, const gblock *g, const rblock *r, const cblock *brings, uint32_t lanes,
+                      cblock *out) {
+    return brings ? run->k->shade_known(brings, r->w, lanes, out) : run->k->shade(&run->ctx, g, r, lanes, out);
+}
+
 uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, const cblock *brings,
                                uint32_t lanes, size_t block) {
     float(*lux)[BLOCK] = run->s->b.aovs.made[NOC_AOV_ILLUMINANCE];
-    cblock alone = { 0 }, *out = &run->s->b.colour[block];
     if (lux)
         run->k->samples_lux(&run->ctx, g, r, lanes & measured(lux[block]), lux[block]);
     if (notes(run)) { /* on its own, so that what the samples add is told to the last bit */
-        run->k->shade(&run->ctx, g, r, lanes, &alone);
+        cblock alone = { 0 };
+        shade(run, g, r, brings, lanes, &alone);
         note(run, r->light, &alone, lanes, block);
     }
-    return brings ? run->k->shade_known(brings, r->w, lanes, out) : run->k->shade(&run->ctx, g, r, lanes, out);
+    return shade(run, g, r, brings, lanes, &run->s->b.colour[block]);
 }
 
 uint32_t noc_cpu_shade_sky(const stage_run *run, const gblock *g, const rayblock *rays, const float *share,
