@@ -8,7 +8,7 @@ NINJA = ninja $$([ -t 1 ] || echo --quiet)
 WERROR = false
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build check asan tsan fuzz coverage format install clean deps deps-check
+.PHONY: help demo build check asan tsan fuzz coverage arm64 format install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
@@ -18,6 +18,7 @@ help:
 	@echo "make tsan     those of them that run threads, under ThreadSanitizer"
 	@echo "make fuzz     fuzzers of all that reads bytes, TIME=60 seconds each, with a table (CORPUS=\"pbf csv\" for some of them)"
 	@echo "make coverage what share of each room's lines the tests run, and the fuzzers' inputs"
+	@echo "make arm64    builds for arm64, and runs some tests of it by qemu"
 	@echo "make format   lays out C as clang-format 14 does; make check fails where it would change a file"
 	@echo "make install  install to PREFIX ($(PREFIX)), DESTDIR respected"
 	@echo "make clean    remove what was built"
@@ -83,6 +84,9 @@ coverage:
 	@$(NINJA) -C build-coverage
 	@tools/coverage.py build-coverage build-fuzz/corpus
 
+arm64:
+	@tools/check-arm64.sh
+
 format:
 	@tools/check-format.sh --write
 
@@ -97,4 +101,4 @@ install: deps build/build.ninja
 	@grep -E '/($(INSTALLED))$$' build/meson-logs/install-log.txt | sed 's/^/  /'
 
 clean:
-	rm -rf build build-asan build-tsan build-coverage build-fuzz night.png
+	rm -rf build build-asan build-tsan build-coverage build-fuzz build-arm64 night.png

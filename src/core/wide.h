@@ -4,6 +4,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #if CORE_LANES == 16 && defined(__AVX512F__)
@@ -46,6 +48,11 @@ FN real sqrt_(real a) { return (real)_mm_sqrt_ps((__m128)a); }
 FN real min_(real a, real b) { return (real)_mm_min_ps((__m128)a, (__m128)b); }
 FN real max_(real a, real b) { return (real)_mm_max_ps((__m128)a, (__m128)b); }
 #define ANY(c) (_mm_movemask_ps((__m128)(c)) != 0)
+#elif CORE_LANES == 4 && defined(__aarch64__)
+FN real sqrt_(real a) { return (real)vsqrtq_f32((float32x4_t)a); }
+FN real min_(real a, real b) { return sel(a < b, a, b); } /* vminq gives NaN where either is */
+FN real max_(real a, real b) { return sel(a > b, a, b); }
+#define ANY(c) (vmaxvq_u32((uint32x4_t)(c)) != 0)
 #else
 FN real sqrt_(real a) {
     real r;
@@ -63,12 +70,20 @@ FN bool wide_any(mask c) {
 }
 #define ANY(c) wide_any(c)
 #endif
+#if CORE_LANES == 4 && defined(__aarch64__)
+FN u32 high_u32(u32 a, u32 b) {
+    uint64x2_t low = vmull_u32(vget_low_u32((uint32x4_t)a), vget_low_u32((uint32x4_t)b));
+    uint64x2_t high = vmull_high_u32((uint32x4_t)a, (uint32x4_t)b);
+    return (u32)vuzp2q_u32(vreinterpretq_u32_u64(low), vreinterpretq_u32_u64(high));
+}
+#else
 FN u32 high_u32(u32 a, u32 b) {
     u32 r;
     for (int i = 0; i < CORE_LANES; i++)
         r[i] = (uint32_t)((uint64_t)a[i] * b[i] >> 32);
     return r;
 }
+#endif
 
 #endif
 
@@ -86,6 +101,9 @@ FN u1 lane_bits(mask m) {
     return (u1)_mm256_movemask_ps((__m256)m);
 #elif CORE_LANES == 4 && defined(__x86_64__)
     return (u1)_mm_movemask_ps((__m128)m);
+#elif CORE_LANES == 4 && defined(__aarch64__)
+    const uint32_t bit[4] = { 1, 2, 4, 8 };
+    return vaddvq_u32(vandq_u32((uint32x4_t)m, vld1q_u32(bit)));
 #else
     u1 bits = 0;
     for (int i = 0; i < CORE_LANES; i++)
@@ -98,6 +116,8 @@ FN u1 lane_bits(mask m) {
 FN f1 lane_max(real a) {
 #if CORE_LANES == 16 && defined(__AVX512F__)
     return _mm512_reduce_max_ps((__m512)a);
+#elif CORE_LANES == 4 && defined(__aarch64__)
+    return vmaxvq_f32((float32x4_t)a);
 #else
     f1 most = a[0];
     for (int i = 1; i < CORE_LANES; i++)

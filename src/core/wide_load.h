@@ -60,7 +60,17 @@ FN wide_row wide_row_load(const float *quarter, size_t stride, const uint32_t at
 
 #endif
 
-#if defined(WIDE_IN_REGISTERS)
+#if CORE_LANES == 4 && defined(__aarch64__)
+FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t *at) {
+    float32x4_t r0 = vld1q_f32(quarter + (size_t)at[0] * stride), r1 = vld1q_f32(quarter + (size_t)at[1] * stride);
+    float32x4_t r2 = vld1q_f32(quarter + (size_t)at[2] * stride), r3 = vld1q_f32(quarter + (size_t)at[3] * stride);
+    float64x2_t even01 = vreinterpretq_f64_f32(vtrn1q_f32(r0, r1)), even23 = vreinterpretq_f64_f32(vtrn1q_f32(r2, r3));
+    float64x2_t odd01 = vreinterpretq_f64_f32(vtrn2q_f32(r0, r1)), odd23 = vreinterpretq_f64_f32(vtrn2q_f32(r2, r3));
+    wide_quad q = { { (real)vtrn1q_f64(even01, even23), (real)vtrn1q_f64(odd01, odd23),
+                      (real)vtrn2q_f64(even01, even23), (real)vtrn2q_f64(odd01, odd23) } };
+    return q;
+}
+#elif defined(WIDE_IN_REGISTERS)
 FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t *at) {
     wide_row r0 = wide_row_load(quarter, stride, at, 0), r1 = wide_row_load(quarter, stride, at, 1);
     wide_row r2 = wide_row_load(quarter, stride, at, 2), r3 = wide_row_load(quarter, stride, at, 3);
@@ -72,10 +82,12 @@ FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t 
 }
 #else
 FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t *at) {
-    wide_quad q;
+    float f[4][CORE_LANES];
     for (int i = 0; i < CORE_LANES; i++)
         for (int k = 0; k < 4; k++)
-            q.f[k][i] = quarter[(size_t)at[i] * stride + k];
+            f[k][i] = quarter[(size_t)at[i] * stride + k];
+    wide_quad q;
+    memcpy(&q, f, sizeof(q));
     return q;
 }
 #endif
