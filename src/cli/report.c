@@ -244,7 +244,7 @@ noc_status cli_write_picture(render_job *job) {
 /* Pictures that are no failure of the program, but hardly what was wanted. */
 void cli_warn_of_picture(const render_job *job) {
     const noc_render_params *p = &job->args->render;
-    if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
+    if (job->args->common.quiet || job->far_away || !job->scene_info.lights || p->method == NOC_METHOD_HEADLIGHT)
         return;
     bool black = noc_image_is_black(job->image);
     /* of a model, which may be wound the other way */

@@ -13,6 +13,13 @@ typedef struct view_light {
     bool lamp; /* as opposed to a window */
 } view_light;
 
+/* One beside an eye. */
+typedef struct view_beside {
+    double x, y, d; /* from the eye, m */
+    double light;
+    bool lamp;
+} view_beside;
+
 /* The city as the presets see it. */
 typedef struct view_city {
     const noc_scene *scene;
@@ -21,6 +28,7 @@ typedef struct view_city {
     double hot[2];                /* middle of the densest lit part */
     bool classes;                 /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
     NOC_ARRAY(view_light) lights; /* around it */
+    NOC_ARRAY(view_beside) beside;
     bool no_memory;
 } view_city;
 
@@ -204,15 +212,14 @@ static void gather_lights(view_city *city, double radius) {
     }
 }
 
-/* Light that a view from eye along (dx, dy) takes in; at `soft` metres a light counts half as much as at none. */
-static double light_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle,
-                            double reach, double soft, bool lamps_only) {
+/* Light that a view from above takes in along (dx, dy); at 200 m a light counts half as much as at none. */
+static double light_from_above(const view_city *city, const double eye[3], double dx, double dy, double half_angle) {
     double sum = 0, cosine = cos(half_angle);
     for (size_t i = 0; i < city->lights.len; i++) {
         const view_light *l = &city->lights.data[i];
         double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = sqrt(x * x + y * y);
-        if (d > 6 && d < reach && x * dx + y * dy > cosine * d && (!lamps_only || l->lamp))
-            sum += l->weight / (d + soft);
+        if (d > 6 && d < 500 && x * dx + y * dy > cosine * d)
+            sum += l->weight / (d + 200);
     }
     return sum;
 }
@@ -273,8 +280,8 @@ static void aerial(view_city *city, double aspect, noc_camera *camera) {
         double mx = city->middle[0] - city->hot[0], my = city->middle[1] - city->hot[1];
         inside *= 1 + 0.6 * (mx * dx + my * dy) / NOC_MAX(hypot(mx, my), reach);
         double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
-        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, 200, false)) *
-                       inside * (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) /
+        double score = (1e-6 + light_from_above(city, eye, dx, dy, half_width(camera->fov_deg, aspect))) * inside *
+                       (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) /
                        (1 + NOC_MAX(steep - 0.5, 0) * 3);
         if (score > best * 1.0001) {
             best = score;
@@ -327,18 +334,46 @@ static double free_distance(const noc_scene *scene, const double eye[3], double 
     return STREET_REACH;
 }
 
-/* Rays march past poles; a lamp this near has one right before the eye. */
-static bool pole_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle) {
+/* Lights up to 100 m around an eye: what directions are judged by, worked out once for all of them. */
+static bool find_beside(view_city *city, const double eye[3]) {
+    city->beside.len = 0;
     for (size_t i = 0; i < city->lights.len; i++) {
         const view_light *l = &city->lights.data[i];
-        double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = hypot(x, y);
-        if (l->lamp && d < 8 && x * dx + y * dy > cos(half_angle) * d - 1)
-            return true;
+        double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = sqrt(x * x + y * y);
+        if (d < 100 && !array_push(&city->beside, (view_beside){ x, y, d, l->weight / (d + 30), l->lamp })) {
+            city->no_memory = true;
+            return false;
+        }
     }
-    return false;
+    return true;
+}
+
+typedef struct view_way {
+    double lamps, all; /* light of the picture that way; at 30 m a light counts half as much as at none */
+    bool pole;         /* rays march past poles, and a lamp this near has one right before the eye */
+} view_way;
+
+static view_way way_of(const view_city *city, double dx, double dy, double cosine) {
+    view_way way = { 0 };
+    for (size_t i = 0; i < city->beside.len; i++) {
+        const view_beside *l = &city->beside.data[i];
+        double along = l->x * dx + l->y * dy;
+        if (l->d > 6 && along > cosine * l->d) {
+            way.all += l->light;
+            way.lamps += l->lamp ? l->light : 0;
+        }
+        way.pole = way.pole || (l->lamp && l->d < 8 && along > cosine * l->d - 1);
+    }
+    return way;
+}
+
+static double light_of_way(view_way way) {
+    return 1e-3 + way.lamps + 0.5 * NOC_MIN(way.all - way.lamps, 2 * way.lamps + 10);
 }
 
 enum { DIRECTIONS = 32 };
+
+#define MOST_OF_WAY (110 * 1.2 * 6 * 1.001) /* of a score, over its light: street_look */
 
 /* Nothing says what the triangles of a mesh are. A street is where walls stand around, and lights not far above; a
  * small model must enclose the place, or it is an object on a plate, seen better from outside. */
@@ -356,31 +391,37 @@ static bool is_street(const view_city *city, const double eye[3], const bool wal
     return light && around >= (extent < 50 ? DIRECTIONS * 3 / 4 : DIRECTIONS / 6);
 }
 
-/* Best direction from one place; returns its score. */
-static double street_look(const view_city *city, const double eye[3], double aspect, double fov, double *yaw) {
-    double best = 0, free_way[DIRECTIONS];
-    bool wall[DIRECTIONS];
+/* Best direction from one place, which is to beat so much; returns its score, 0 where it surely does not. */
+static double street_look(view_city *city, const double eye[3], double aspect, double fov, double beat, double *yaw) {
+    double best = 0, free_way[DIRECTIONS], cosine = cos(half_width(fov, aspect));
+    bool wall[DIRECTIONS], may = false;
+    view_way ways[DIRECTIONS];
+    if (!find_beside(city, eye))
+        return 0;
+    for (int i = 0; i < DIRECTIONS; i++) {
+        ways[i] = way_of(city, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), cosine);
+        may = may || MOST_OF_WAY * light_of_way(ways[i]) > beat;
+    }
+    if (!may) /* no need to ask what stands around */
+        return 0;
     for (int i = 0; i < DIRECTIONS; i++)
         free_way[i] =
             free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), &wall[i]);
     if (!city->classes && !is_street(city, eye, wall, free_way))
         return 0;
     for (int i = 0; i < DIRECTIONS; i++) {
-        double a = 2 * M_PI * i / DIRECTIONS, dx = cos(a), dy = sin(a);
         double beside = NOC_MIN(free_way[(i + 1) % DIRECTIONS], free_way[(i + DIRECTIONS - 1) % DIRECTIONS]);
-        double lamps = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, 30, true);
-        double all = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, 30, false);
         /* a long way ahead, some room beside it, lamps along it; lit fronts help */
         double way = NOC_MIN(free_way[i], 110.0) * NOC_MIN(beside, 12.0) / 12;
         int fronts = 0; /* a street has houses to its sides */
         for (int j = i + DIRECTIONS - 4; j <= i + DIRECTIONS + 4; j++)
             fronts += wall[j % DIRECTIONS] && free_way[j % DIRECTIONS] < 70;
         double aside = NOC_MIN(free_way[(i + 2) % DIRECTIONS], free_way[(i + DIRECTIONS - 2) % DIRECTIONS]);
-        way *= (0.2 + NOC_MIN(aside, 9.0) / 9) * (pole_in_view(city, eye, dx, dy, half_width(fov, aspect)) ? 0.2 : 1);
-        double score = way * (1 + NOC_MIN(fronts, 5)) * (1e-3 + lamps + 0.5 * NOC_MIN(all - lamps, 2 * lamps + 10));
+        way *= (0.2 + NOC_MIN(aside, 9.0) / 9) * (ways[i].pole ? 0.2 : 1);
+        double score = way * (1 + NOC_MIN(fronts, 5)) * light_of_way(ways[i]);
         if (score > best * 1.0001) {
             best = score;
-            *yaw = a;
+            *yaw = 2 * M_PI * i / DIRECTIONS;
         }
     }
     return best;
@@ -414,7 +455,7 @@ static bool street(view_city *city, double aspect, noc_camera *camera) {
                 if (!open_place(scene, eye[0], eye[1], &z))
                     continue;
                 eye[2] = z + 1.7;
-                double score = street_look(city, eye, aspect, camera->fov_deg, &yaw);
+                double score = street_look(city, eye, aspect, camera->fov_deg, best * 1.0001, &yaw);
                 if (score > best * 1.0001) {
                     best = score;
                     memcpy(camera->eye, eye, sizeof(eye));
@@ -476,8 +517,9 @@ static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspe
     if (view == NOC_VIEWPOINT_AERIAL)
         aerial(&city, aspect, &c);
     else if (!found)
-        city.no_memory = !noc_overview_camera(scene, city.min, city.max, aspect, &c);
+        city.no_memory = city.no_memory || !noc_overview_camera(scene, city.min, city.max, aspect, &c);
     array_free(&city.lights);
+    array_free(&city.beside);
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
     if (view == NOC_VIEWPOINT_STREET && (room || !found))
