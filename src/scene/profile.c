@@ -139,14 +139,11 @@ void noc_light_set_profile(const noc_scene *scene, const noc_light *l, noc_light
 void noc_profile_orient(const noc_profile *profile, const double axis[3], const double street[3], double c0[3]) {
     if (!axis || !street || !c0)
         return;
-    noc_profile_info info = { 0 };
     double n[3], a[3];
-    if (profile)
-        noc_profile_get_info(profile, &info);
     memcpy(n, axis, sizeof(n));
     memcpy(a, street, sizeof(a));
     bool turned = unit(n) && unit(a);
-    double along = dot(a, n), angle = info.street * M_PI / 180;
+    double along = dot(a, n), angle = profile ? profile->info.street * M_PI / 180 : 0;
     for (int k = 0; k < 3; k++)
         a[k] -= along * n[k];
     turned = turned && unit(a);
