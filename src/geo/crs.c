@@ -14,7 +14,9 @@ struct geo_crs {
     char key[CRS_KEY];   /* what crs_kept knows it by */
     PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
     PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
-    PJ *easting_first;   /* made on first use of geo_crs_scale */
+    enum { DEGREES_UNTOLD, DEGREES_OWN, DEGREES_NONE } degrees; /* told on first use of own_lonlat */
+    PJ *to_degrees;                                             /* of its own datum; NULL: it is in them */
+    bool degrees_lat_first;
     char *name, *definition;
     bool geographic, metric, lat_first;
     double height_unit; /* metres */
@@ -264,7 +266,8 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
     if (!copy)
         return NULL;
     *copy = *crs;
-    copy->to_wgs84 = copy->easting_first = NULL;
+    copy->to_wgs84 = copy->to_degrees = NULL;
+    copy->degrees = DEGREES_UNTOLD;
     copy->context = crs_context_take(false);
     copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
     copy->name = noc_strdup(crs->name);
@@ -279,7 +282,7 @@ void geo_crs_destroy(geo_crs *crs) {
     if (!crs)
         return;
     proj_destroy(crs->to_wgs84);
-    proj_destroy(crs->easting_first);
+    proj_destroy(crs->to_degrees);
     proj_destroy(crs->pj);
     crs_context_give(crs->context, crs->strict);
     free(crs->name);
@@ -301,6 +304,23 @@ bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
 
 #define FARTHEST_TURN 3600.0 /* degrees of longitude: ten times round, which no file means */
 
+/* By a way to longitude and latitude, NULL where x and y are those. */
+static bool take_way(const geo_crs *crs, PJ *way, bool lat_first, double x, double y, double lonlat[2]) {
+    if (!isfinite(x) || !isfinite(y) || (crs->geographic && fabs(y) > 400))
+        return false;
+    PJ_COORD c = way ? proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL) : proj_coord(x, y, 0, 0);
+    if (way) {
+        c = proj_trans(way, PJ_FWD, c);
+        proj_errno_reset(way);
+    }
+    double lon = lat_first ? c.xy.y : c.xy.x, lat = lat_first ? c.xy.x : c.xy.y;
+    if (!isfinite(lon) || fabs(lon) > FARTHEST_TURN || !isfinite(lat) || fabs(lat) > 90)
+        return false;
+    lonlat[0] = lon;
+    lonlat[1] = lat;
+    return true;
+}
+
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
     if (!crs->to_wgs84 && !(crs->to_wgs84 = crs_kept(crs->context, crs->key, "OGC:CRS84"))) {
         PJ *wgs84 = proj_create(crs->context, "OGC:CRS84");
@@ -308,23 +328,49 @@ bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
         proj_destroy(wgs84);
         crs_keep(crs->to_wgs84, crs->key, "OGC:CRS84");
     }
-    if (!crs->to_wgs84)
-        return false;
-    if (!isfinite(x) || !isfinite(y) || (crs->geographic && fabs(y) > 400))
-        return false;
-    PJ_COORD c = proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL);
-    c = proj_trans(crs->to_wgs84, PJ_FWD, c);
-    proj_errno_reset(crs->to_wgs84);
-    if (!isfinite(c.xy.x) || fabs(c.xy.x) > FARTHEST_TURN || !isfinite(c.xy.y) || fabs(c.xy.y) > 90)
-        return false;
-    lonlat[0] = c.xy.x;
-    lonlat[1] = c.xy.y;
-    return true;
+    return crs->to_wgs84 && take_way(crs, crs->to_wgs84, false, x, y, lonlat);
+}
+
+/* Is this geographic CRS in degrees from Greenwich? */
+static bool from_greenwich(PJ_CONTEXT *context, const PJ *geographic) {
+    double longitude = NAN;
+    PJ *meridian = proj_get_prime_meridian(context, geographic);
+    bool told = meridian && proj_prime_meridian_get_parameters(context, meridian, &longitude, NULL, NULL);
+    proj_destroy(meridian);
+    double unit = axis_unit(context, geographic, 0);
+    return told && longitude == 0 && fabs(unit - M_PI / 180) < 1e-12;
+}
+
+static void find_degrees(geo_crs *crs) {
+    PJ_CONTEXT *context = crs->context;
+    bool plain = proj_get_type(crs->pj) != PJ_TYPE_BOUND_CRS;
+    PJ *own = plain ? proj_crs_get_geodetic_crs(context, crs->pj) : NULL;
+    PJ *cs = own ? proj_crs_get_coordinate_system(context, own) : NULL;
+    const char *direction = "";
+    bool known = cs && proj_cs_get_axis_info(context, cs, 0, NULL, NULL, &direction, NULL, NULL, NULL, NULL) &&
+                 from_greenwich(context, own);
+    if (known && !crs->geographic) {
+        crs->degrees_lat_first = noc_ieq(direction, "north");
+        crs->to_degrees = proj_create_crs_to_crs_from_pj(context, crs->pj, own, NULL, NULL);
+        known = crs->to_degrees != NULL;
+    }
+    crs->degrees = known ? DEGREES_OWN : DEGREES_NONE;
+    proj_destroy(cs);
+    proj_destroy(own);
+}
+
+/* The same for what a shift of some hundred metres is nothing to: in degrees of the CRS's own datum. PROJ searches its
+ * database for a way to another one, 4 to 40 ms. */
+static bool own_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
+    if (crs->degrees == DEGREES_UNTOLD)
+        find_degrees(crs);
+    return crs->degrees == DEGREES_OWN ? take_way(crs, crs->to_degrees, crs->degrees_lat_first, x, y, lonlat)
+                                       : geo_crs_lonlat(crs, x, y, lonlat);
 }
 
 double geo_crs_outside(geo_crs *crs, double x, double y) {
     double p[2];
-    if (!geo_crs_lonlat(crs, x, y, p))
+    if (!own_lonlat(crs, x, y, p))
         return INFINITY;
     if (!crs->has_area)
         return 0;
@@ -338,20 +384,35 @@ double geo_crs_outside(geo_crs *crs, double x, double y) {
     return NOC_MAX(NOC_MAX(dx, dy), 0);
 }
 
+/* Semi-axes in metres; false where they are not told. */
+static bool ellipsoid(const geo_crs *crs, double *a, double *b) {
+    PJ *pj = proj_get_ellipsoid(crs->context, crs->pj);
+    bool told = pj && proj_ellipsoid_get_parameters(crs->context, pj, a, b, NULL, NULL) && *a > 0 && *b > 0;
+    proj_destroy(pj);
+    return told;
+}
+
+/* By differences over some metres: PROJ's own factors take as long as a search of its database. The columns of way are
+ * metres eastwards and northwards of the ground, a unit of x and of y. */
 double geo_crs_scale(geo_crs *crs, double x, double y) {
-    double p[2];
-    if (crs->geographic || !geo_crs_lonlat(crs, x, y, p))
+    enum { STEP = 50 };
+    double p[2], a, b, way[2][2];
+    if (crs->geographic || !own_lonlat(crs, x, y, p) || !ellipsoid(crs, &a, &b))
         return NAN;
-    if (!crs->easting_first) /* PROJ 9.1 gives no factors of a CRS that is northing first */
-        crs->easting_first = proj_normalize_for_visualization(crs->context, crs->pj);
-    if (!crs->easting_first)
+    double sine = sin(p[1] * M_PI / 180), e2 = 1 - b * b / (a * a), w = sqrt(1 - e2 * sine * sine);
+    const double metres[2] = { a / w * cos(p[1] * M_PI / 180) * M_PI / 180, a * (1 - e2) / (w * w * w) * M_PI / 180 };
+    for (int k = 0; k < 2; k++) {
+        double from[2], to[2], dx = k ? 0 : STEP, dy = k ? STEP : 0;
+        if (!own_lonlat(crs, x - dx, y - dy, from) || !own_lonlat(crs, x + dx, y + dy, to))
+            return NAN;
+        for (int i = 0; i < 2; i++)
+            way[i][k] = remainder(to[i] - from[i], 360) * metres[i] / (2 * STEP);
+    }
+    double area = fabs(way[0][0] * way[1][1] - way[0][1] * way[1][0]);
+    double parallel = hypot(way[1][0], way[1][1]) / area, meridian = hypot(way[0][0], way[0][1]) / area;
+    if (!isfinite(parallel) || !isfinite(meridian))
         return NAN;
-    PJ_FACTORS f = proj_factors(crs->easting_first, proj_coord(proj_torad(p[0]), proj_torad(p[1]), 0, 0));
-    bool failed = proj_errno(crs->easting_first) != 0;
-    proj_errno_reset(crs->easting_first);
-    if (failed || !(f.meridional_scale > 0 && f.parallel_scale > 0))
-        return NAN;
-    return fabs(f.meridional_scale - 1) > fabs(f.parallel_scale - 1) ? f.meridional_scale : f.parallel_scale;
+    return fabs(meridian - 1) > fabs(parallel - 1) ? meridian : parallel;
 }
 
 /* ---- transforms ---- */
