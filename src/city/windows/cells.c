@@ -19,6 +19,8 @@ typedef struct polygon {
 /* A triangle of the strip: in s and t. */
 typedef struct flat_triangle {
     double p[3][2], lo[2], hi[2];
+    double n[7][2], d[7]; /* lines around it: n . x <= d */
+    int sides;
 } flat_triangle;
 
 /* Splits at the line of the points x where n . x = d: what is beyond it, n . x > d, and the rest. */
@@ -51,7 +53,7 @@ static double area_of(const polygon *a) {
 
 /* The sides of a triangle, moved out by half a gap so that gaps close, and those of the box around it, so that its
  * sharp corners do not move far. */
-static int sides_of(const flat_triangle *t, double n[7][2], double d[7]) {
+static void find_sides(flat_triangle *t) {
     const double half = WINDOW_GAP_MM / 2000;
     int count = 0;
     double turn =
@@ -62,17 +64,25 @@ static int sides_of(const flat_triangle *t, double n[7][2], double d[7]) {
         if (!(length > 0))
             continue;
         length = turn < 0 ? -length : length;
-        n[count][0] = x / length;
-        n[count][1] = y / length;
-        d[count] = n[count][0] * a[0] + n[count][1] * a[1] + half;
+        t->n[count][0] = x / length;
+        t->n[count][1] = y / length;
+        t->d[count] = t->n[count][0] * a[0] + t->n[count][1] * a[1] + half;
         count++;
     }
     for (int i = 0; i < 4; i++, count++) {
         double sign = i & 1 ? 1 : -1;
-        n[count][0] = i < 2 ? sign : 0;
-        n[count][1] = i < 2 ? 0 : sign;
-        d[count] = sign * (i & 1 ? t->hi : t->lo)[i / 2] + half;
+        t->n[count][0] = i < 2 ? sign : 0;
+        t->n[count][1] = i < 2 ? 0 : sign;
+        t->d[count] = sign * (i & 1 ? t->hi : t->lo)[i / 2] + half;
     }
+    t->sides = count;
+}
+
+/* How many corners are beyond the line. */
+static int count_beyond(const polygon *a, const double n[2], double d) {
+    int count = 0;
+    for (int i = 0; i < a->n; i++)
+        count += n[0] * a->p[i][0] + n[1] * a->p[i][1] - d > 0;
     return count;
 }
 
@@ -87,15 +97,22 @@ static bool is_wall(const flat_triangle *t, const uint32_t *near, size_t count, 
         const flat_triangle *a = &t[near[i]];
         if (a->hi[1] < lo[1] || a->lo[1] > hi[1] || a->hi[0] < lo[0] || a->lo[0] > hi[0])
             continue;
-        double side[7][2], d[7];
-        int sides = sides_of(a, side, d), before = n;
+        int before = n;
         for (int k = 0; k < before;) {
             polygon rest = bare[k], beyond;
             bare[k] = bare[--before]; /* this one goes; what is left of it comes behind all */
             bare[before] = bare[--n];
-            for (int j = 0; j < sides && rest.n > 2; j++) {
+            for (int j = 0; j < a->sides && rest.n > 2; j++) {
                 polygon inside;
-                split(&rest, side[j], d[j], &beyond, &inside);
+                int out = count_beyond(&rest, a->n[j], a->d[j]);
+                if (!out)
+                    continue;
+                if (out == rest.n) {
+                    beyond = rest;
+                    inside.n = 0;
+                } else {
+                    split(&rest, a->n[j], a->d[j], &beyond, &inside);
+                }
                 if (beyond.n > 2 && area_of(&beyond) > BARE / MOST_PIECES) {
                     if (n == MOST_PIECES)
                         return false;
@@ -127,6 +144,7 @@ static bool flatten(const wall_facets *f, const strip *s, flat_list *out) {
                     t.hi[m] = fmax(t.hi[m], t.p[j][m]);
                 }
             }
+            find_sides(&t);
             if (!array_push(out, t))
                 return false;
         }
