@@ -258,6 +258,20 @@ bool geo_issues_refused(const geo_issues *issues);
 /* Before a srsName that the file does not hold: it is the format's, or the one that its numbers tell. */
 #define GEO_CRS_TAKEN '='
 
+/* Sinks for threads that read objects of the file before their turn. What one is given is as the sink that it is of
+ * would have it now, and waits; what must come in its turn (lamps, a CRS that is new, what is to be said) it refuses
+ * without a word. */
+struct geo_sink;
+typedef struct geo_sides {
+    int threads; /* that may read at once */
+    /* One, for one thread at a time; NULL: not now, or memory was refused. */
+    struct geo_sink *(*create)(void *ctx);
+    /* In its turn: all that it was given goes where the sink's own would. */
+    noc_status (*take)(void *ctx, struct geo_sink *side);
+    void (*forget)(struct geo_sink *side); /* what it was given */
+    void (*destroy)(struct geo_sink *side);
+} geo_sides;
+
 /* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
 typedef struct geo_sink {
     void *ctx;
@@ -286,9 +300,10 @@ typedef struct geo_sink {
     noc_status (*features)(void *ctx, const geo_features *features);
     /* fraction of the file read; false: cancelled */
     bool (*progress)(void *ctx, double done);
-    bool named_lamps;  /* the user says that the file's points are lamps */
-    bool named_tracks; /* that its lines are tracks: those of maps come as roads, whatever they are */
-    bool inspect;      /* a file of no use is told about, and no error */
+    const geo_sides *sides; /* NULL: all comes in its turn */
+    bool named_lamps;       /* the user says that the file's points are lamps */
+    bool named_tracks;      /* that its lines are tracks: those of maps come as roads, whatever they are */
+    bool inspect;           /* a file of no use is told about, and no error */
 } geo_sink;
 
 /* ---- points by place (cells.c) ---- */
@@ -321,6 +336,11 @@ typedef struct geo_triangles {
  * skipped. */
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);
 void geo_triangles_free(geo_triangles *t);
+
+void geo_issues_clear(geo_issues *issues); /* as if nothing had been counted */
+
+/* How many reasons hold that text. */
+size_t geo_issues_like(const geo_issues *issues, const char *text);
 
 /* The same as often as another list counted it: reason is copied, examples are ids as that list joined them. */
 void geo_issues_add(geo_issues *issues, geo_issue_kind kind, const char *reason, size_t count, const char *examples);

@@ -21,14 +21,25 @@ geo_issues *geo_issues_create(void) { return noc_calloc(1, sizeof(geo_issues)); 
 
 bool geo_issues_refused(const geo_issues *issues) { return issues->names.refused; }
 
-void geo_issues_destroy(geo_issues *issues) {
-    if (!issues)
-        return;
+void geo_issues_clear(geo_issues *issues) {
     for (size_t i = 0; i < issues->lines.len; i++)
         free(issues->lines.data[i].joined);
     array_free(&issues->lines);
     arena_free(&issues->names);
+}
+
+void geo_issues_destroy(geo_issues *issues) {
+    if (!issues)
+        return;
+    geo_issues_clear(issues);
     free(issues);
+}
+
+size_t geo_issues_like(const geo_issues *issues, const char *text) {
+    size_t count = 0;
+    for (size_t i = 0; i < issues->lines.len; i++)
+        count += strstr(issues->lines.data[i].reason, text) != NULL;
+    return count;
 }
 
 /* There are a few dozen reasons at most, and those in use come first: a linear search. NULL where memory is refused. */

@@ -18,8 +18,17 @@ typedef enum xml_fault {
  * XML_ParserFree() it. */
 XML_Parser xml_create(const char *separator);
 
-/* Parses all of the stream. after: asked behind each chunk, ends the reading by another status than NOC_OK. Returns
- * that, or the stream's own; *fault tells what else ended it, and nobody has been told of that. */
-noc_status xml_read(XML_Parser xml, noc_stream *stream, noc_status (*after)(void *user), void *user, xml_fault *fault);
+/* How far a parser is. Zero-initialise. */
+typedef struct xml_progress {
+    XML_Index fed, reached; /* bytes */
+} xml_progress;
+
+/* Parses all of the stream, to the text's end. after: asked behind each piece, ends the reading by another status than
+ * NOC_OK. Returns that, or the stream's own; *fault tells what else ended it, and nobody has been told of that. */
+noc_status xml_read(XML_Parser xml, xml_progress *at, noc_stream *stream, noc_status (*after)(void *user), void *user,
+                    xml_fault *fault);
+/* The same of some bytes, which others may follow. */
+noc_status xml_feed(XML_Parser xml, xml_progress *at, const char *data, size_t size, noc_status (*after)(void *user),
+                    void *user, xml_fault *fault);
 
 #endif

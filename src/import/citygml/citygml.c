@@ -78,37 +78,45 @@ static noc_status xml_error(cg_parser *p, xml_fault fault) {
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
 }
 
-static noc_status after_chunk(void *user) {
+noc_status cg_ask(void *user) {
     cg_parser *p = user;
     if (p->status)
         return p->status;
-    double done = !p->pass ? 0 : p->pass == 1 ? noc_stream_progress(p->stream) : 1;
-    return p->sink->progress(p->sink->ctx, done) ? NOC_OK : NOC_ERR_CANCELLED;
+    return p->sink->progress(p->sink->ctx, cg_progress(p)) ? NOC_OK : NOC_ERR_CANCELLED;
 }
 
-static noc_status parse(cg_parser *p) {
-    xml_fault fault;
-    noc_status status = xml_read(p->xml, p->stream, after_chunk, p, &fault);
+noc_status cg_after(cg_parser *p, noc_status status, xml_fault fault) {
     if (status)
         return p->status = status;
     return fault ? xml_error(p, fault) : NOC_OK;
 }
 
-noc_status cg_parse(cg_parser *p, int pass, XML_StartElementHandler start, XML_EndElementHandler end,
-                    XML_CharacterDataHandler text) {
-    p->pass = pass;
+bool cg_open(cg_parser *p, const cg_handlers *handlers) {
     p->depth = p->skip = 0;
     p->in_polygon = p->in_ring = false;
     p->text = CG_TEXT_NONE;
+    p->lines = 0;
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
-    p->xml = xml_create("\n");
-    if (!p->xml)
-        return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
+    if (!(p->xml = xml_create("\n")))
+        return false;
     XML_SetUserData(p->xml, p);
-    XML_SetElementHandler(p->xml, start, end);
-    XML_SetCharacterDataHandler(p->xml, text);
+    XML_SetElementHandler(p->xml, handlers->start, handlers->end);
+    XML_SetCharacterDataHandler(p->xml, handlers->text);
     XML_SetEntityDeclHandler(p->xml, refuse_entities);
-    parse(p);
+    return true;
+}
+
+noc_status cg_parse(cg_parser *p, int pass, const cg_handlers *handlers) {
+    p->pass = pass;
+    if (!cg_open(p, handlers))
+        return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
+    if (pass == 1 && p->sink->sides) {
+        cg_read_members(p, handlers);
+    } else {
+        xml_fault fault;
+        noc_status status = xml_read(p->xml, &(xml_progress){ 0 }, p->stream, cg_ask, p, &fault);
+        cg_after(p, status, fault);
+    }
     if (!p->status && !p->version && pass)
         cg_fail(p, NOC_ERR_FORMAT, "no CityGML in this GML file");
     XML_ParserFree(p->xml);
@@ -117,7 +125,7 @@ noc_status cg_parse(cg_parser *p, int pass, XML_StartElementHandler start, XML_E
 }
 
 static noc_status run_pass(cg_parser *p, int pass) {
-    return cg_parse(p, pass, cg_start_element, cg_end_element, cg_characters);
+    return cg_parse(p, pass, &(cg_handlers){ cg_start_element, cg_end_element, cg_characters });
 }
 
 cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
@@ -130,6 +138,7 @@ cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params,
         return NULL;
     }
     p->stream = stream;
+    p->params = params;
     p->place = noc_stream_name(stream);
     p->sink = sink;
     p->max_lod = NOC_CLAMP(params->lod, 0, 4);

@@ -10,9 +10,12 @@
 #include "import/import.h"
 #include "import/xml.h"
 
+#include <stdatomic.h>
+
 #define CG_MAX_DEPTH 200          /* elements in elements */
 #define CG_MAX_NUMBERS (1u << 25) /* in one polygon; more is taken for an attack */
 #define CG_MAX_CRS 64             /* different srsNames in one file */
+#define CG_MAX_KINDS 64           /* of objects that are left out, told apart */
 #define CG_NONE UINT32_MAX
 #define CG_EMITTED UINT32_MAX
 
@@ -277,6 +280,9 @@ typedef struct cg_frame {
 typedef struct cg_parser {
     XML_Parser xml;    /* NULL: objects come from JSON (import/cityjson/) */
     const char *place; /* of what is read, for errors, where no XML says it */
+    bool ahead;        /* it reads members before their turn (members.c), and must not say anything */
+    size_t lines;      /* of members before, that others have read */
+    const noc_import_params *params;
     noc_stream *stream;
     geo_sink *sink;
     int max_lod;
@@ -340,7 +346,6 @@ typedef struct cg_parser {
     NOC_ARRAY(float) out_uv;
     bool object_open;               /* begin_object was called and end_object not yet */
     size_t emitted, dropped, twins; /* polygons: used; there already; of these with the shape of another one */
-    uint32_t kinds_told;            /* of objects that were left out */
     size_t looked;                  /* features and surfaces looked at for installed lamps, since progress was asked */
 } cg_parser;
 
@@ -366,8 +371,24 @@ void cg_spread_materials(cg_parser *p);
 /* The sink's number for a material and a texture, either may be 0. */
 uint32_t cg_appearance_of(cg_parser *p, uint32_t material, uint32_t texture);
 /* citygml.c: one pass over the file by these handlers. */
-noc_status cg_parse(cg_parser *p, int pass, XML_StartElementHandler start, XML_EndElementHandler end,
-                    XML_CharacterDataHandler text);
+typedef struct cg_handlers {
+    XML_StartElementHandler start;
+    XML_EndElementHandler end;
+    XML_CharacterDataHandler text;
+} cg_handlers;
+noc_status cg_parse(cg_parser *p, int pass, const cg_handlers *handlers);
+
+/* p->xml, ready to read a text from its beginning. False: memory was refused. */
+bool cg_open(cg_parser *p, const cg_handlers *handlers);
+noc_status cg_ask(void *parser); /* whether to go on */
+/* What comes of a text that expat was given. */
+noc_status cg_after(cg_parser *p, noc_status status, xml_fault fault);
+
+/* members.c: reads the stream by p->xml, members by several threads where the sink has sides. The same comes of it for
+ * any number of them. */
+noc_status cg_read_members(cg_parser *p, const cg_handlers *handlers);
+extern size_t cg_members_at_once;      /* bytes of a piece that a thread reads; tests and fuzzers set it */
+extern atomic_size_t cg_members_ahead; /* pieces that were of use before their turn: for tests */
 
 /* parse.c: expat handlers; user data is the parser. */
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
@@ -389,6 +410,10 @@ uint32_t cg_srs(cg_parser *p, const char *name, const char *place);
 uint32_t cg_feature_add(cg_parser *p, const cg_feature_type *type, const char *id, uint32_t parent);
 /* A word that the feature says of itself: `key` is function, usage, class, name, terminationDate or validTo. */
 void cg_word_add(cg_parser *p, uint32_t feature, const char *key, const char *word);
+
+/* False where the parser reads ahead: it stops, for this must be done in its turn. */
+bool cg_in_turn(cg_parser *p);
+double cg_progress(const cg_parser *p); /* share of the file that is read */
 
 void cg_object_clear(cg_object *object);
 void cg_object_free(cg_object *object);
@@ -437,6 +462,7 @@ void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *poi
 /* Metres a unit of x and y about a point: 1, but for degrees. */
 void cg_metres(const cg_parser *p, const double *point, double *east, double *north);
 void cg_emit_shown(cg_parser *p);              /* the selected surfaces, as an object */
+size_t cg_kinds_told(const cg_parser *p);      /* of objects that were left out */
 void cg_stop(cg_parser *p, noc_status status); /* of the sink, which has reported it */
 void cg_emit_end(cg_parser *p);                /* closes the sink's object if one is open */
 void cg_store_free(cg_store *store);

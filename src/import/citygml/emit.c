@@ -196,25 +196,26 @@ void cg_emit_shown(cg_parser *p) {
     cg_emit_end(p);
 }
 
+#define LEFT_OUT " left out, no geometry"
+
+size_t cg_kinds_told(const cg_parser *p) { return geo_issues_like(p->sink->issues, LEFT_OUT); }
+
 /* An object of which nothing is drawn is named by what it says it is, so that nothing hides behind the others. */
-static void left_out(cg_parser *p, const char *why) {
-    enum { MOST = 64 }; /* kinds of objects that are told apart */
+static void left_out(cg_parser *p, const char *under) {
     const cg_object *object = &p->object;
     if (p->pass > 1 && object->features.data[0].type->kind == GEO_TERRAIN)
         return; /* which every pass sees */
     const char *cls = cg_attribute_get(object, 0, "class"), *function = cg_attribute_get(object, 0, "function");
     char reason[200];
-    if (p->kinds_told >= MOST)
+    if ((cls || function) && cg_kinds_told(p) >= CG_MAX_KINDS)
         cls = function = NULL;
-    snprintf(reason, sizeof(reason), "%s left out, %s%s%.40s%s%s%.40s%s", object->features.data[0].type->name, why,
+    snprintf(reason, sizeof(reason), "%s" LEFT_OUT "%s%s%.40s%s%s%.40s%s", object->features.data[0].type->name, under,
              cls ? " (class '" : "", cls ? cls : "", cls ? "'" : "",
              function ? cls ? ", function '" : " (function '" : "", function ? function : "",
              function ? "')"
              : cls    ? ")"
                       : "");
-    size_t before = geo_issues_count(p->sink->issues);
     geo_issue(p->sink->issues, GEO_SKIPPED, reason, cg_report_id(p, NULL, 0));
-    p->kinds_told += (uint32_t)(geo_issues_count(p->sink->issues) - before);
 }
 
 static void emit_object(cg_parser *p) {
@@ -228,7 +229,7 @@ static void emit_object(cg_parser *p) {
         return;
     cg_emit_installed_lamps(p);
     if (!s->shown && !s->duplicates)
-        left_out(p, s->above ? "no geometry at or under the level of detail asked for" : "no geometry");
+        left_out(p, s->above ? " at or under the level of detail asked for" : "");
     cg_emit_shown(p);
 }
 
@@ -312,6 +313,8 @@ static void collect(cg_parser *p) {
 }
 
 static void want_missing(cg_parser *p) {
+    if (!cg_in_turn(p))
+        return;
     uint64_t index;
     for (size_t i = 0; i < p->selection.missing.len; i++) {
         if (map_get(&p->store.wanted, p->selection.missing.data[i], &index))
@@ -367,7 +370,7 @@ void cg_object_end(cg_parser *p) {
         for (size_t i = 0; i < p->object.surfaces.len; i++)
             cg_issue(p, GEO_SKIPPED, "unresolved xlink", p->object.surfaces.data[i].href);
         if (!p->object_open)
-            left_out(p, "no geometry");
+            left_out(p, "");
         cg_emit_end(p);
     } else {
         finish_object(p);

@@ -395,7 +395,7 @@ static bool make_lamp(cg_parser *p, uint32_t feature, geo_lamp *lamp, bool *give
     *gives_way = false;
     if (verdict == LAMP_ACTIVE && is_gone(object, feature))
         verdict = LAMP_INACTIVE;
-    if (mine) {
+    if (mine && cg_in_turn(p)) {
         read_lamp(p, feature, tags, count, lamp);
         mine = place_by_body(p, feature, lamp, gives_way) || (!p->status && place_by_point(p, feature, lamp));
     }
@@ -427,7 +427,7 @@ static bool goes_on(cg_parser *p) {
     if (p->status || ++p->looked < ASK)
         return !p->status;
     p->looked = 0;
-    if (!p->sink->progress(p->sink->ctx, p->pass == 1 ? noc_stream_progress(p->stream) : 1))
+    if (!p->sink->progress(p->sink->ctx, cg_progress(p)))
         cg_stop(p, NOC_ERR_CANCELLED);
     return !p->status;
 }

@@ -270,7 +270,7 @@ noc_status cg_read_looks(cg_parser *p) {
         return p->status ? p->status : p->sink->appearance ? noc_stream_rewind(p->stream) : NOC_OK;
     noc_status status = noc_stream_rewind(p->stream);
     if (!status)
-        status = cg_parse(p, 0, on_start, on_end, on_text);
+        status = cg_parse(p, 0, &(cg_handlers){ on_start, on_end, on_text });
     return status ? status : noc_stream_rewind(p->stream);
 }
 

@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+static size_t line_of(const cg_parser *p) { return p->lines + XML_GetCurrentLineNumber(p->xml); }
+
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
     if (p->status)
         return p->status;
@@ -15,10 +17,19 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
     va_end(ap);
     if (!p->xml)
         return p->status = noc_error(p->sink->log, status, "%s: %s", p->place, cause);
-    p->status = noc_error(p->sink->log, status, "%s:%lu: %s", noc_stream_name(p->stream),
-                          XML_GetCurrentLineNumber(p->xml), cause);
+    p->status = noc_error(p->sink->log, status, "%s:%zu: %s", noc_stream_name(p->stream), line_of(p), cause);
     XML_StopParser(p->xml, XML_FALSE);
     return p->status;
+}
+
+bool cg_in_turn(cg_parser *p) {
+    if (p->ahead)
+        cg_stop(p, NOC_ERR_UNSUPPORTED);
+    return !p->ahead;
+}
+
+double cg_progress(const cg_parser *p) {
+    return p->ahead || !p->pass ? 0 : p->pass == 1 ? noc_stream_progress(p->stream) : 1;
 }
 
 noc_status cg_no_memory(cg_parser *p) { return cg_fail(p, NOC_ERR_MEMORY, "out of memory"); }
@@ -126,6 +137,8 @@ uint32_t cg_srs(cg_parser *p, const char *name, const char *place) {
     for (uint32_t i = 0; i < p->srs_count; i++)
         if (!strcmp(p->srs[i].name, name))
             return i;
+    if (!cg_in_turn(p))
+        return 0;
     if (p->srs_count == CG_MAX_CRS) {
         cg_fail(p, NOC_ERR_FORMAT, "more than %d coordinate reference systems in one file", CG_MAX_CRS);
         return 0;
@@ -140,7 +153,7 @@ uint32_t cg_srs(cg_parser *p, const char *name, const char *place) {
 }
 
 static uint32_t intern_srs(cg_parser *p, const char *name) {
-    char *place = noc_format("%s:%lu", noc_stream_name(p->stream), XML_GetCurrentLineNumber(p->xml));
+    char *place = noc_format("%s:%zu", noc_stream_name(p->stream), line_of(p));
     if (!place)
         cg_no_memory(p);
     uint32_t srs = place ? cg_srs(p, name, place) : 0;

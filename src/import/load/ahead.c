@@ -6,7 +6,9 @@
 #include <math.h>
 
 #define ENOUGH_OBJECTS 64
-#define ENOUGH_POINTS 200000
+#define FEW_OBJECTS 8 /* that are enough where they are large */
+#define FEW_POINTS 10000
+#define ENOUGH_POINTS 200000 /* of however few */
 
 /* What a reader emitted, in its order. Texts and arrays in the arena. */
 typedef struct ahead_event {
@@ -34,6 +36,7 @@ typedef struct ahead_event {
 struct look_ahead {
     reading *reading;
     geo_sink sink; /* where everything goes in the end */
+    geo_sides sides;
     bool passing;
     bool in_object, sampled; /* in an object whose place is known */
     size_t points;
@@ -94,7 +97,9 @@ static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t co
         a->sampled = true;
     }
     a->points += count;
-    return a->samples.len >= ENOUGH_OBJECTS || a->points >= ENOUGH_POINTS ? ahead_release(a) : NOC_OK;
+    bool enough = a->samples.len >= ENOUGH_OBJECTS || a->points >= ENOUGH_POINTS ||
+                  (a->samples.len >= FEW_OBJECTS && a->points >= FEW_POINTS);
+    return enough ? ahead_release(a) : NOC_OK;
 }
 
 static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
@@ -263,6 +268,17 @@ static bool on_progress(void *ctx, double done) {
     return a->sink.progress(a->sink.ctx, done);
 }
 
+/* Where the place is settled, the sink's own. */
+static geo_sink *on_side(void *ctx) {
+    struct look_ahead *a = ctx;
+    return a->passing ? a->sink.sides->create(a->sink.ctx) : NULL;
+}
+
+static noc_status on_take(void *ctx, geo_sink *side) {
+    struct look_ahead *a = ctx;
+    return a->sink.sides->take(a->sink.ctx, side);
+}
+
 struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     struct look_ahead *a = noc_calloc(1, sizeof(*a));
     if (!a)
@@ -283,6 +299,12 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->columns = on_columns;
     sink->features = on_features;
     sink->progress = on_progress;
+    if (sink->sides) {
+        a->sides = *sink->sides;
+        a->sides.create = on_side;
+        a->sides.take = on_take;
+        sink->sides = &a->sides;
+    }
     return a;
 }
 

@@ -83,8 +83,7 @@ static void *copied(noc_arena *arena, const void *data, size_t size) {
     return copy ? memcpy(copy, data, size) : NULL;
 }
 
-/* The part with texts and arrays of the batch's own. */
-static load_part copy_part(noc_arena *arena, load_part p) {
+load_part part_copied(noc_arena *arena, load_part p) {
     switch (p.kind) {
     case PART_OBJECT: {
         part_surface *s = copied(arena, p.u.object.surfaces, p.u.object.surface_count * sizeof(*s));
@@ -124,7 +123,7 @@ noc_status queue_put(load_queue *q, const importer *im, const load_part *part) {
     if (!q->filling)
         q->filling = noc_calloc(1, sizeof(*q->filling));
     batch *b = q->filling;
-    load_part copy = b ? copy_part(&b->arena, *part) : *part;
+    load_part copy = b ? part_copied(&b->arena, *part) : *part;
     if (!b || b->arena.refused || !array_push(&b->parts, copy)) {
         q->refused = true;
         return NOC_ERR_MEMORY; /* told where the file is taken */
@@ -179,6 +178,7 @@ static void read_one(void *ctx, size_t item, int worker) {
     if (!stop) {
         noc_log *log = noc_log_create(&(noc_log_params){ NOC_LOG_DEBUG, keep_message, q });
         reading r = { a->im, &a->im->inputs[a->inputs[item]], a->inputs[item], .log = log, .queue = q };
+        r.sides = sides_of((int)(import_threads(a->im->params, SIZE_MAX) / a->count));
         q->refused = !log;
         status = log ? read_file(&r) : NOC_ERR_MEMORY;
         reading_free(&r);

@@ -233,6 +233,7 @@ static noc_status read_input(importer *im, size_t index) {
     input *in = &im->inputs[index];
     taking t = take_start(im, in);
     reading r = { .im = im, .in = in, .index = index, .log = im->log };
+    r.sides = sides_of((int)import_threads(im->params, SIZE_MAX));
     noc_status status = in->reader ? read_file(&r) : read_builtin(im, in);
     reading_free(&r);
     return take_finish(&t, status);

@@ -225,12 +225,15 @@ typedef struct part_surface {
 
 /* One file while it is read. */
 typedef struct load_queue load_queue;
+typedef struct load_side load_side;
 typedef struct reading {
     importer *im;
     input *in;
     size_t index;
     noc_log *log;
     load_queue *queue; /* where all waits for the file's turn; NULL: it has it */
+    load_side *side;   /* where all waits for its turn in the file; NULL: it has it */
+    geo_sides sides;   /* its sink's */
     bool stopped;
     source_crs *source;      /* of the coordinates that come next */
     NOC_ARRAY(double) given; /* the points that are placed, as they were given */
@@ -524,6 +527,12 @@ noc_status read_at_once(importer *im, const size_t *inputs, size_t count, noc_po
 noc_status queue_put(load_queue *q, const importer *im, const load_part *part);
 bool queue_progress(load_queue *q, double share); /* false: all is stopped */
 void queue_claim(void *queue, double bytes);      /* import_budget.claim */
+
+load_part part_copied(noc_arena *arena, load_part p); /* with texts and arrays of the arena's own */
+
+/* side.c: readings of parts of a file before their turn. */
+geo_sides sides_of(int threads); /* its sink's, where so many threads may read one file */
+noc_status side_put(load_side *side, const load_part *part);
 
 /* load.c: reads a file that is not built in. */
 noc_status read_file(reading *r);

@@ -22,7 +22,7 @@ static size_t folder_length(const char *path) {
 }
 
 /* Where the image lies, in the reading's texts; NULL where it is of no use, which is counted, or memory was refused. */
-static const char *find_image(reading *r, const char *name) {
+static const char *find_image(reading *r, const char *name, bool *lost) {
     char *named = arena_strdup(&r->look_texts, name);
     for (char *c = named; c && *c; c++)
         *c = *c == '\\' ? '/' : *c;
@@ -33,6 +33,9 @@ static const char *find_image(reading *r, const char *name) {
     const char *trouble = import_named_trouble(folder, path, r->im->params->allow_outside);
     if (!trouble)
         return path;
+    *lost = true;
+    if (r->side)
+        return NULL; /* counted in its turn */
     bool outside = strstr(trouble, "outside") != NULL;
     geo_issue(r->in->issues, GEO_GUESSED, outside ? "image outside of the file's folder" : "image that is not there",
               name);
@@ -41,11 +44,14 @@ static const char *find_image(reading *r, const char *name) {
 
 noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *number) {
     surface_look look = { .as = *appearance };
+    bool lost = false;
     *number = 0;
     if (appearance->image && *appearance->image)
-        look.image = find_image(r, appearance->image);
+        look.image = find_image(r, appearance->image, &lost);
     if (r->look_texts.refused)
         return noc_no_memory(r->log, r->in->path);
+    if (r->side && (lost || r->looks.len == MOST_LOOKS))
+        return NOC_ERR_UNSUPPORTED;
     look.as.image = NULL;
     if (!look.image && !look.as.coloured && !look.as.name)
         return NOC_OK;
@@ -160,7 +166,8 @@ noc_status look_material(importer *im, const input *in, noc_class cls, const sur
 noc_status look_mesh_image(void *ctx, int material, const mesh_image *image) {
     reading *r = ctx;
     importer *im = r->im;
-    const char *path = image->data ? image->name : find_image(r, image->name);
+    bool lost;
+    const char *path = image->data ? image->name : find_image(r, image->name, &lost);
     uint64_t number;
     if (r->look_texts.refused)
         return noc_no_memory(r->log, r->in->path);

@@ -82,6 +82,8 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
     bool taken = srs_name && *srs_name == GEO_CRS_TAKEN;
     const char *spelling = is_blank(srs_name) ? "" : srs_name + taken;
     source_crs *source = find_source(r, spelling, taken);
+    if (!source && r->side)
+        return NOC_ERR_UNSUPPORTED; /* in its turn */
     if (!source) {
         geo_crs *crs;
         noc_status status = resolve(r, spelling, place ? place : in->path, &crs);
@@ -454,6 +456,8 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
         return NOC_OK;
     }
     centre_of(lo, hi, centre);
+    if (r->side && lo[2] > hi[2])
+        return NOC_ERR_UNSUPPORTED; /* what it does to the extent depends on what was before */
     if (!s->ready) {
         noc_status status = prepare(r, s, centre);
         if (status)

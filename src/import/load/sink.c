@@ -6,6 +6,8 @@
 #define FLUSH_TRIANGLES 500000 /* of one object and class: terrain is not kept twice */
 
 noc_status sink_hand_over(reading *r, const load_part *part) {
+    if (r->side)
+        return side_put(r->side, part);
     return r->queue ? queue_put(r->queue, r->im, part) : take_part(r->im, r->in, part);
 }
 
@@ -398,6 +400,7 @@ geo_sink sink_create(reading *r) {
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,
+                       .sides = r->sides.threads > 1 ? &r->sides : NULL,
                        .named_lamps = r->in->named_lamps,
                        .named_tracks = r->in->named_tracks,
                        .inspect = r->im->inspect };

@@ -95,7 +95,7 @@ static noc_status count_xml(noc_stream *stream, geo_sink *sink, geo_features *fe
         return noc_no_memory(sink->log, noc_stream_name(stream));
     XML_SetUserData(xml, &x);
     XML_SetElementHandler(xml, on_start, on_end);
-    noc_status status = xml_read(xml, stream, after_chunk, &x, &fault);
+    noc_status status = xml_read(xml, &(xml_progress){ 0 }, stream, after_chunk, &x, &fault);
     XML_ParserFree(xml);
     if (!status && fault == XML_FAULT_MEMORY)
         status = noc_no_memory(sink->log, noc_stream_name(stream));

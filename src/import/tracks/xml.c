@@ -167,7 +167,7 @@ static noc_status parse(track_xml *x) {
     XML_SetCharacterDataHandler(x->xml, on_text);
     XML_SetEntityDeclHandler(x->xml, refuse_entities);
     xml_fault fault;
-    noc_status status = xml_read(x->xml, x->stream, after_chunk, x, &fault);
+    noc_status status = xml_read(x->xml, &(xml_progress){ 0 }, x->stream, after_chunk, x, &fault);
     if (!status && fault)
         status = xml_error(x, fault);
     XML_ParserFree(x->xml);
