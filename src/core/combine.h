@@ -1,13 +1,15 @@
 /* core/combine.h: a pixel's combination of reservoirs by the rules of core/reuse.h.
  *
- * A machine gathers k neighbours and, for each pixel, calls reuse_begin, then reuse_target for each neighbour, traces
- * the rays that reuse_asks for, from the neighbour to the sample held, and calls reuse_end. Includers supply FRAME and
- * what they have gathered:
+ * A machine gathers k neighbours and, for each pixel, calls reuse_begin, then reuse_target for each neighbour that is
+ * asked, traces the rays that reuse_asks for, from that neighbour to the sample held, and calls reuse_end. Pairwise one
+ * neighbour is asked, which reuse_partner names for each pixel; else all are. Includers supply FRAME and what they have
+ * gathered:
  *
  *     neighbour_on(CTX i)       there is one: it is on a surface like the pixel's
  *     neighbour_resv(CTX i)     its reservoir, of m = w = 0 where there is none
- *     neighbour_surf(CTX i)     its surface, as its own camera saw it
- *     neighbour_answer(CTX i)   reuse_answer: target of the sample held at neighbour i
+ *     neighbour_resv_of(CTX i)  the same, of a number that differs from pixel to pixel
+ *     neighbour_surf(CTX i)     surface of the i-th that is asked, as its own camera saw it
+ *     neighbour_answer(CTX i)   reuse_answer: target of the sample held at the i-th that is asked
  *
  * With bias rays (FRAME_BIAS_RAYS) a reservoir's target includes visibility at its own pixel: every reservoir that is
  * reused has either an unoccluded sample or W = 0. Then a neighbour's p_j needs one shadow ray from the neighbour;
@@ -32,10 +34,17 @@ FN mask neighbour_on(CTX int i);
 FN reservoir neighbour_resv(CTX int i);
 FN surf neighbour_surf(CTX int i);
 FN real neighbour_answer(CTX int i);
+FN reservoir neighbour_resv_of(CTX u32 i);
+
+/* Pairwise, so many of the neighbours' samples are looked at: REUSE_DRAWS drawn among more than that. */
+#define REUSE_DRAWS 2
 
 /* The choice of neighbour i, and of the pixel's own sample. dim: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass. */
 FN real reuse_choice(u32 key, u32 dim, int i) { return rng(key, dim + KU(3u * U32(i) + 2u)); }
 FN real reuse_own_choice(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS))); }
+/* Which neighbours are drawn, and which one is asked about the pixel's own sample. */
+FN real reuse_draws_start(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS) + 1u)); }
+FN real reuse_partner_choice(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS) + 2u)); }
 
 /* Neighbour i's target at the pixel. */
 FN real reuse_offered(CTX surf s, reservoir q) {
@@ -70,10 +79,30 @@ FN reservoir_builder reuse_begin(CTX surf s, reservoir own, u32 key, u32 dim, in
     return st;
 }
 
-/* Target of the sample held at neighbour i, unshadowed. l: its light as it was when the neighbour's reservoir was made.
- */
-FN real reuse_target(CTX int i, reservoir_builder held, light l) {
-    mask on = neighbour_on(PASS i);
+/* Number of neighbours that are asked. */
+FN int reuse_asked(CTX int k) { return FRAME.bias == BIAS_PAIRWISE && k > 1 ? 1 : k; }
+
+/* Pairwise: the neighbour that is asked, drawn in proportion to M. */
+FN u32 reuse_partner(CTX u32 key, u32 dim, int k) {
+    u32 partner = KU(0u);
+    real m_n = K(0.0f);
+    if (k > 1) {
+        for (int i = 0; i < k; i++)
+            m_n = m_n + neighbour_resv(PASS i).m;
+        EXACT real at = reuse_partner_choice(key, dim) * m_n;
+        real before = K(0.0f);
+        for (int i = 0; i < k; i++) {
+            real m = neighbour_resv(PASS i).m;
+            partner = selu(and_(m > K(0.0f), before <= at), KU(U32(i)), partner);
+            before = before + m;
+        }
+    }
+    return partner;
+}
+
+/* Target of the sample held at the i-th neighbour that is asked, unshadowed. on: there is one. l: its light as it was
+ * when the neighbour's reservoir was made. */
+FN real reuse_target(CTX int i, mask on, reservoir_builder held, light l) {
     real p = K(0.0f);
     if (ANY(on))
         p = sel(on, target(PASS neighbour_surf(PASS i), l, held.u, held.v), K(0.0f));
@@ -89,23 +118,70 @@ FN mask reuse_asks(reservoir_builder held, int i, real p) {
 /* What the answer makes of the target. */
 FN real reuse_answer(real p, mask asked, mask clear) { return sel(and_(asked, not_(clear)), K(0.0f), p); }
 
+/* A neighbour's sample is offered. times: what stands for it, over its chance to be offered. */
+FN reservoir_builder reuse_offer(CTX reservoir_builder st, surf s, reservoir q, real share, real m_n, real m_c,
+                                 real times, real tag, real xi) {
+    real p = reuse_offered(PASS s, q);
+    EXACT real w = sel(q.w > K(0.0f), pair_weight(share, m_n, q.p, m_c, p, q.w), K(0.0f)) * times;
+    return builder_add(st, q.light, q.u, q.v, p, w, K(0.0f), tag, xi);
+}
+
+/* What a neighbour's sample brings at its own pixel, by its M: about what it will weigh at another. */
+FN real reuse_mass(reservoir q) {
+    EXACT real w = q.m * q.p * q.w;
+    return w;
+}
+
+/* REUSE_DRAWS of the neighbours are offered, in proportion to their mass, with one random start. */
+FN reservoir_builder reuse_offer_drawn(CTX surf s, real m_n, real m_c, u32 key, u32 dim, int k) {
+    real total = K(0.0f);
+    for (int i = 0; i < k; i++)
+        total = total + reuse_mass(neighbour_resv(PASS i));
+    real inv = mis_scale(K(1.0f), m_n);
+    EXACT real step = total * K(1.0f / F32(REUSE_DRAWS));
+    EXACT real at = reuse_draws_start(key, dim) * step;
+    reservoir_builder st = builder_empty();
+    for (int d = 0; d < REUSE_DRAWS; d++) {
+        u32 drawn = KU(0u);
+        real mass = K(0.0f);
+        real before = K(0.0f);
+        for (int i = 0; i < k; i++) {
+            real of = reuse_mass(neighbour_resv(PASS i));
+            mask here = and_(of > K(0.0f), before <= at);
+            drawn = selu(here, KU(U32(i)), drawn);
+            mass = sel(here, of, mass);
+            before = before + of;
+        }
+        reservoir q = neighbour_resv_of(PASS drawn);
+        EXACT real share = q.m * inv;
+        st = reuse_offer(PASS st, s, q, share, m_n, m_c, mis_scale(step, mass), K(F32(d + 1)),
+                         reuse_choice(key, dim, d));
+        at = at + step;
+    }
+    return st;
+}
+
 FN combined reuse_pairwise(CTX surf s, reservoir own, u32 key, u32 dim, int k) {
     real m_n = K(0.0f);
     for (int i = 0; i < k; i++)
         m_n = m_n + neighbour_resv(PASS i).m;
-    real inv = mis_scale(K(1.0f), m_n);
-    real m_c = sel(m_n > K(0.0f), K(0.0f), K(1.0f));
     reservoir_builder st = builder_empty();
-    for (int i = 0; i < k; i++) {
-        reservoir q = neighbour_resv(PASS i);
-        EXACT real share = q.m * inv;
-        m_c = m_c + pair_canonical(share, m_n, neighbour_answer(PASS i), own.m, own.p);
-        real p = reuse_offered(PASS s, q);
-        real w = sel(q.w > K(0.0f), pair_weight(share, m_n, q.p, own.m, p, q.w), K(0.0f));
-        st = builder_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), reuse_choice(key, dim, i));
+    if (k > REUSE_DRAWS) {
+        st = reuse_offer_drawn(PASS s, m_n, own.m, key, dim, k);
+    } else {
+        real inv = mis_scale(K(1.0f), m_n);
+        for (int i = 0; i < k; i++) {
+            reservoir q = neighbour_resv(PASS i);
+            EXACT real share = q.m * inv;
+            st = reuse_offer(PASS st, s, q, share, m_n, own.m, K(1.0f), K(F32(i + 1)), reuse_choice(key, dim, i));
+        }
     }
-    st = builder_add(st, own.light, own.u, own.v, own.p, m_c * own.p * own.w, own.m, K(0.0f),
-                     reuse_own_choice(key, dim));
+    real m_c = K(1.0f);
+    if (k > 0)
+        m_c = sel(m_n > K(0.0f), pair_canonical(K(1.0f), m_n, neighbour_answer(PASS 0), own.m, own.p), K(1.0f));
+    EXACT real m_all = m_n + own.m;
+    EXACT real w_own = m_c * own.p * own.w;
+    st = builder_add(st, own.light, own.u, own.v, own.p, w_own, m_all, K(0.0f), reuse_own_choice(key, dim));
     combined c;
     c.r = builder_end(st, K(1.0f));
     c.own = st.tag == K(0.0f);

@@ -68,9 +68,9 @@ FN frame_constants dialect_constants(uint32_t bias) {
 
 /* Neighbours of the item at hand. */
 FN mask neighbour_on(CTX int i) { return rng(dialect_key, KU(4000u + U32(i))) < K(0.8f); }
-FN reservoir neighbour_resv(CTX int i) {
+FN reservoir neighbour_resv_of(CTX u32 i) {
     reservoir r;
-    u32 key = hash_u32(dialect_key + KU(4100u + U32(i)));
+    u32 key = hash_u32(dialect_key + KU(4100u) + i);
     mask empty = rng(key, KU(0u)) < K(0.3f);
     r.light = scale_u32(rng_bits(key, KU(1u)), KU(KERNEL_LIGHTS));
     r.u = rng(key, KU(2u));
@@ -80,6 +80,7 @@ FN reservoir neighbour_resv(CTX int i) {
     r.p = sel(empty, K(0.0f), rng(key, KU(6u)) * K(5.0f));
     return r;
 }
+FN reservoir neighbour_resv(CTX int i) { return neighbour_resv_of(PASS KU(U32(i))); }
 FN surf neighbour_surf(CTX int i) { return any_surf(hash_u32(dialect_key + KU(4200u + U32(i)))); }
 FN real neighbour_answer(CTX int i) {
     u32 key = hash_u32(dialect_key + KU(4300u + U32(i)));
@@ -123,7 +124,7 @@ FN void places(CTX u32 item, u32 key) {
     put_real(PASS item, FRAME_FIRST + 10, nearest(any_real(key, KU(4420u))));
 }
 
-/* 14 slots: the sample that neighbours are asked about, and what survives. */
+/* 14 slots: the sample that neighbours are asked about, and what survives; which of them is asked pairwise. */
 FN void combination(CTX u32 item, int slot, u32 key, surf s, reservoir own) {
     reservoir_builder held = reuse_begin(PASS s, own, key, KU(64u), 3);
     put_u32(PASS item, slot, held.light);
@@ -134,8 +135,8 @@ FN void combination(CTX u32 item, int slot, u32 key, surf s, reservoir own) {
     put_real(PASS item, slot + 5, held.m);
     combined c = reuse_end(PASS s, own, held, key, KU(64u), 3);
     put_resv(PASS item, slot + 6, c.r);
-    put_u32(PASS item, slot + 12, flag_of(c.own));
-    real p = reuse_target(PASS 1, held, light_load(PASS held.light));
+    put_u32(PASS item, slot + 12, flag_of(c.own) + shl(reuse_partner(PASS key, KU(64u), 3), 1));
+    real p = reuse_target(PASS 1, neighbour_on(PASS 1), held, light_load(PASS held.light));
     put_real(PASS item, slot + 13, sel(reuse_asks(held, 1, p), p, K(0.0f)));
 }
 

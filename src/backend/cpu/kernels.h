@@ -112,12 +112,19 @@ typedef struct combining {
     uint32_t dim;            /* DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */
     const frame_camera *eye; /* the neighbours' */
     int k;                   /* neighbours */
+    bool partners;           /* one of them is asked, another one for each lane; else all are */
     held_block held;
     float p_at[MAX_NEIGHBOURS][BLOCK]; /* its target there */
     uint32_t asked[MAX_NEIGHBOURS],
         unoccluded[MAX_NEIGHBOURS]; /* lanes of rays from there; those that nothing blocks */
+    gblock partner; /* surfaces of those that lanes ask where that differs from lane to lane; no depth, no light */
     neighbour n[MAX_NEIGHBOURS];
 } combining;
+
+/* Of the i-th neighbour that is asked. */
+static inline const gblock *noc_asked_surface(const combining *b, int i) {
+    return b->partners ? &b->partner : &b->n[i].g;
+}
 
 /* Scratch of the reference method, one a worker. */
 typedef struct reference_scratch {

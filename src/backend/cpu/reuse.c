@@ -28,38 +28,48 @@ static void ask_neighbours(const stage_run *run, const struct core_context *ther
             continue;
         shadow_block *s = noc_cpu_gather(run, w, b->at, b->asked[i]);
         memcpy(s->light, b->held.light, sizeof(s->light));
-        run->k->segments(there, &b->n[i].g, b->held.light, b->held.u, b->held.v, &s->rays);
+        run->k->segments(there, noc_asked_surface(b, i), b->held.light, b->held.u, b->held.v, &s->rays);
     }
 }
 
-/* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. there:
- * the context with the lights that the neighbours' reservoirs were made with. */
-static void combine(stage_run *run, const struct core_context *there, noc_ray_world in, worker *w, int count) {
+static void finish(const stage_run *run, combining *c) {
     frame_buffers *b = &run->s->b;
+    rblock out; /* the old one may lie where the new one goes */
+    run->k->reuse_end(&run->ctx, c, &out);
+    b->r[run->stage->target][c->at] = out;
+    b->visible[run->stage->target][c->at] = (uint16_t)c->visible;
+}
+
+/* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company; where
+ * there are none, each block is done while it is in the cache. there: the context with the lights that the neighbours'
+ * reservoirs were made with. */
+static void combine(stage_run *run, const struct core_context *there, noc_ray_world in, worker *w, int count) {
     bool rays = run->ctx.frame->flags & FRAME_BIAS_RAYS;
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
+        at[i] = c->at;
         run->k->reuse_begin(&run->ctx, c);
         if (run->ctx.frame->bias != BIAS_BIASED)
             run->k->reuse_ask(there, c);
-        if (rays)
+        if (rays) {
             ask_neighbours(run, there, w, c);
-        else
-            memset(c->asked, 0, sizeof(c->asked));
+            continue;
+        }
+        memset(c->asked, 0, sizeof(c->asked));
+        finish(run, c);
     }
-    noc_cpu_trace_occlusion(run->s, w, in, w->batch.blocks, w->batch.count);
-    const shadow_block *answer = w->batch.blocks;
-    size_t at[TILE_BLOCKS * TILE_BLOCKS];
-    for (int i = 0; i < count; i++) {
-        combining *c = &w->combining[i];
-        rblock out; /* the old one may lie where the new one goes */
-        for (int k = 0; k < c->k; k++)
-            if (c->asked[k])
-                c->unoccluded[k] = answer++->unoccluded;
-        run->k->reuse_end(&run->ctx, c, &out);
-        b->r[run->stage->target][c->at] = out;
-        b->visible[run->stage->target][at[i] = c->at] = (uint16_t)c->visible;
+    if (rays) {
+        noc_cpu_trace_occlusion(run->s, w, in, w->batch.blocks, w->batch.count);
+        const shadow_block *answer = w->batch.blocks;
+        for (int i = 0; i < count; i++) {
+            combining *c = &w->combining[i];
+            for (int k = 0; k < c->k; k++)
+                if (c->asked[k])
+                    c->unoccluded[k] = answer++->unoccluded;
+            finish(run, c);
+        }
     }
     if (run->stage->resolve_visibility)
         noc_cpu_resolve(run, w, at, count);
