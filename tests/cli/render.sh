@@ -67,7 +67,7 @@ assert max(abs(a - b) for a, b in zip(eye, (0, -100, 50))) < 0.01, eye
 assert abs(float(meta["camera-fov"]) - 50) < 0.01 and meta["method"] == "headlight", meta'
 result $? "the camera of a photograph by its points" "$(cat err)"
 run render $small --method headlight -o p.png
-test $status = 0 && ! grep -q warning err; result $? "the headlight asks no lamps, and is not warned of that" "$(cat err)"
+test $status = 0 && ! grep -q warning err; result $? "no warning of lamps to the headlight" "$(cat err)"
 echo 1,2,3 >>photo.csv
 run render $small --photo-points photo.csv -o q.png
 test $status = 1 && grep -q 'photo.csv:10: a row is px,py,x,y,z' err
