@@ -14,7 +14,7 @@ struct geo_crs {
     char key[CRS_KEY];   /* what crs_kept knows it by */
     PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
     PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
-    enum { DEGREES_UNTOLD, DEGREES_OWN, DEGREES_NONE } degrees; /* told on first use of own_lonlat */
+    enum { DEGREES_UNTOLD, DEGREES_OWN, DEGREES_NONE } degrees; /* told on first use of geo_crs_lonlat_near */
     PJ *to_degrees;                                             /* of its own datum; NULL: it is in them */
     bool degrees_lat_first;
     char *name, *definition;
@@ -359,9 +359,8 @@ static void find_degrees(geo_crs *crs) {
     proj_destroy(own);
 }
 
-/* The same for what a shift of some hundred metres is nothing to: in degrees of the CRS's own datum. PROJ searches its
- * database for a way to another one, 4 to 40 ms. */
-static bool own_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
+/* In degrees of the CRS's own datum. PROJ searches its database for a way to another one, 4 to 40 ms. */
+bool geo_crs_lonlat_near(geo_crs *crs, double x, double y, double lonlat[2]) {
     if (crs->degrees == DEGREES_UNTOLD)
         find_degrees(crs);
     return crs->degrees == DEGREES_OWN ? take_way(crs, crs->to_degrees, crs->degrees_lat_first, x, y, lonlat)
@@ -370,7 +369,7 @@ static bool own_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
 
 double geo_crs_outside(geo_crs *crs, double x, double y) {
     double p[2];
-    if (!own_lonlat(crs, x, y, p))
+    if (!geo_crs_lonlat_near(crs, x, y, p))
         return INFINITY;
     if (!crs->has_area)
         return 0;
@@ -397,13 +396,13 @@ static bool ellipsoid(const geo_crs *crs, double *a, double *b) {
 double geo_crs_scale(geo_crs *crs, double x, double y) {
     enum { STEP = 50 };
     double p[2], a, b, way[2][2];
-    if (crs->geographic || !own_lonlat(crs, x, y, p) || !ellipsoid(crs, &a, &b))
+    if (crs->geographic || !geo_crs_lonlat_near(crs, x, y, p) || !ellipsoid(crs, &a, &b))
         return NAN;
     double sine = sin(p[1] * M_PI / 180), e2 = 1 - b * b / (a * a), w = sqrt(1 - e2 * sine * sine);
     const double metres[2] = { a / w * cos(p[1] * M_PI / 180) * M_PI / 180, a * (1 - e2) / (w * w * w) * M_PI / 180 };
     for (int k = 0; k < 2; k++) {
         double from[2], to[2], dx = k ? 0 : STEP, dy = k ? STEP : 0;
-        if (!own_lonlat(crs, x - dx, y - dy, from) || !own_lonlat(crs, x + dx, y + dy, to))
+        if (!geo_crs_lonlat_near(crs, x - dx, y - dy, from) || !geo_crs_lonlat_near(crs, x + dx, y + dy, to))
             return NAN;
         for (int i = 0; i < 2; i++)
             way[i][k] = remainder(to[i] - from[i], 360) * metres[i] / (2 * STEP);

@@ -35,6 +35,8 @@ noc_status geo_crs_database(void);
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
 /* Longitude and latitude (degrees, WGS 84) of a point given easting northing; false if it has none. Not thread-safe. */
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);
+/* The same to a few hundred metres, in a fraction of the time. */
+bool geo_crs_lonlat_near(geo_crs *crs, double x, double y, double lonlat[2]);
 /* How far a point (easting northing) lies outside the area the CRS is meant for: degrees, 0 inside, INFINITY where it
  * has no place on Earth. What tells exchanged axes and wrong CRSs. Not thread-safe. */
 double geo_crs_outside(geo_crs *crs, double x, double y);

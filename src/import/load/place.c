@@ -112,7 +112,7 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
 static bool is_zone_number(source_crs *s, double zone, double x, double y) {
     double p[2];
     return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 &&
-           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat(s->crs, x - 1e6 * zone, y, p) &&
+           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat_near(s->crs, x - 1e6 * zone, y, p) &&
            fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
 }
 
@@ -205,7 +205,7 @@ static noc_status make_metres_true(reading *r, geo_crs **crs, double p[3], geo_c
     const char *path = r->in->path;
     double scale = geo_crs_scale(*crs, p[0], p[1]), lonlat[2];
     *given = NULL;
-    if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat(*crs, p[0], p[1], lonlat))
+    if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat_near(*crs, p[0], p[1], lonlat))
         return NOC_OK;
     noc_status status = NOC_OK;
     geo_crs *local = geo_crs_utm(lonlat[0], lonlat[1]);
@@ -271,7 +271,7 @@ static noc_status settle(reading *r, const source_crs *source, const double poin
     }
     double lonlat[2], p[3] = { point[0], point[1], 0 };
     bool metric = geo_crs_is_metric(source->crs),
-         made = !crs && (metric || geo_crs_lonlat(source->crs, point[0], point[1], lonlat));
+         made = !crs && (metric || geo_crs_lonlat_near(source->crs, point[0], point[1], lonlat));
     if (made)
         crs = metric ? geo_crs_clone(source->crs) : geo_crs_utm(lonlat[0], lonlat[1]);
     if (made && !crs)
