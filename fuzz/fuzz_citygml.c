@@ -15,6 +15,10 @@ static noc_status refuse_lamp(void *ctx, const geo_lamp *lamp) {
 static geo_sink *create(void *ctx) {
     fuzz_sink *side = calloc(1, sizeof(*side));
     fuzz_sink_start(side, NULL);
+    if (!side->sink.issues) { /* memory was refused */
+        free(side);
+        return NULL;
+    }
     side->lat_first = ((fuzz_sink *)ctx)->lat_first;
     side->sink.lamp = refuse_lamp;
     return &side->sink;

@@ -137,14 +137,14 @@ static noc_status cut_piece(team *t, piece *out) {
     }
     out->last = !c->cut;
     out->size = c->cut ? c->cut : c->text.len;
-    NOC_ARRAY(char) rest = { 0 };
-    if (!array_append(&rest, c->text.data + out->size, c->text.len - out->size))
-        return cg_no_memory(t->p);
     if (!t->head_size && c->head && !out->last) {
         if (!(t->head = noc_strndup(c->text.data, c->head)))
             return cg_no_memory(t->p);
         t->head_size = c->head;
     }
+    NOC_ARRAY(char) rest = { 0 };
+    if (!array_append(&rest, c->text.data + out->size, c->text.len - out->size))
+        return cg_no_memory(t->p);
     out->text = c->text.data;
     memcpy(&c->text, &rest, sizeof(rest));
     c->at -= NOC_MIN(c->at, out->size);
