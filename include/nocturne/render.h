@@ -273,6 +273,7 @@ typedef enum noc_pass {
     NOC_PASS_CANDIDATES_POWER,
     NOC_PASS_CANDIDATES_INFLUENCE,
     NOC_PASS_CANDIDATES_LIGHT_BVH,
+    NOC_PASS_SEEN_BEFORE,  /* which pixels have earlier frames behind them: others get more rays */
     NOC_PASS_SHARE_RAYS,   /* lists: which entries a pixel's shadow rays go to */
     NOC_PASS_VISIBILITY,   /* a shadow ray to each pixel's sample */
     NOC_PASS_TRACE_SHARED, /* the shared rays */

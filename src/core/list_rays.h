@@ -105,13 +105,18 @@ FN list_sums list_weigh(CTX surf s, u32 key, u1 near) {
     return sums;
 }
 
+#define LIST_RAYS_MOST 8.0f /* that a pixel can ask for */
+
+/* Rays that a pixel asks for: twice as many where hardly any frame stands behind it, whose samples would be reused. */
+FN real list_asks(f1 rays, mask fresh) { return sel(fresh, K(min1(2.0f * rays, LIST_RAYS_MOST)), K(rays)); }
+
 /* Draws of a pixel: as many as asked for where nothing is known, more where little light is expected to get through, up
  * to twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
-FN real list_draws(list_sums sums, f1 rays, f1 brightness, real rounding) {
+FN real list_draws(list_sums sums, real rays, f1 brightness, real rounding) {
     EXACT f1 unknown = LEARNED_UNKNOWN / learned_pull(LEARNED_UNKNOWN);
-    EXACT real mean = K(rays * unknown) * sums.all / (sums.bright + K(0.01f * brightness));
+    EXACT real mean = rays * K(unknown) * sums.all / (sums.bright + K(0.01f * brightness));
     /* a sum that is rounded up must not be a draw too many: there is no room for it */
-    real n = to_real(to_u32(min_(max_(mean, K(1.0f)) + rounding, K(2.0f * rays))));
+    real n = to_real(to_u32(min_(max_(mean, K(1.0f)) + rounding, rays + rays)));
     return sel(sums.all > K(0.0f), n, K(0.0f));
 }
 

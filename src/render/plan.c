@@ -27,6 +27,8 @@ const noc_pass_row noc_passes[NOC_PASS_COUNT] = {
     [NOC_PASS_CANDIDATES_POWER] = CANDIDATES("power", 0),
     [NOC_PASS_CANDIDATES_INFLUENCE] = CANDIDATES("influence", B(LIST)),
     [NOC_PASS_CANDIDATES_LIGHT_BVH] = CANDIDATES("light-bvh", 0),
+    [NOC_PASS_SEEN_BEFORE] = { "seen before", NOC_DOMAIN_TILE, B(SURFACES) | B(PREVIOUS) | B(SOURCE), B(SHARED_RAYS),
+                               B(PREVIOUS) | B(SOURCE) },
     [NOC_PASS_SHARE_RAYS] = { "share rays", NOC_DOMAIN_TILE, B(SURFACES) | B(LIST) | B(CACHE),
                               B(SHARED_RAYS) | B(RESERVOIRS) },
     [NOC_PASS_VISIBILITY] = { "visibility", NOC_DOMAIN_PIXEL, B(SURFACES) | B(RESERVOIRS), B(RESERVOIRS), 0,
@@ -123,6 +125,8 @@ static void add_candidates(maker *m, const noc_render_params *p) {
             add(m, NOC_PASS_VISIBILITY);
         return;
     }
+    if (m->plan->mixes && p->temporal)
+        add(m, NOC_PASS_SEEN_BEFORE);
     add(m, NOC_PASS_SHARE_RAYS);
     add(m, NOC_PASS_TRACE_SHARED);
     if (p->method == NOC_METHOD_RESTIR)

@@ -15,7 +15,7 @@ void noc_render_use_preset(noc_render_params *p, noc_preset preset) {
     p->learn = d.learn;
     p->temporal = d.temporal;
     p->spatial = interactive ? false : d.spatial;
-    p->history = interactive ? 8 : d.history;
+    p->history = interactive ? 4 : d.history;
     p->bias = d.bias;
     p->bias_rays = d.bias_rays;
     p->visibility_reuse = d.visibility_reuse;

@@ -315,7 +315,7 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, LISTS_FIRST + 9, sums.bright);
     EXACT real all = sums.all + column_at(PASS item & KU(3u), KU(16u));
     sums.all = all;
-    real n = list_draws(sums, 4.0f, 0.75f, rng(key, KU(5002u)));
+    real n = list_draws(sums, list_asks(4.0f, s.f0 > K(0.0f)), 0.75f, rng(key, KU(5002u)));
     put_real(PASS item, LISTS_FIRST + 10, n);
     /* weights that add up to less than was thought: the last draws lie past the end */
     put_u32(PASS item, LISTS_FIRST + 12,

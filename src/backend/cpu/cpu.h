@@ -43,6 +43,7 @@ typedef struct tile_rays {
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
     int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
     int cells, count;
+    uint32_t fresh[TILE_BLOCKS * TILE_BLOCKS]; /* restir: lanes that no earlier frames stand behind */
     /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
     float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     double bright;
@@ -322,6 +323,9 @@ void noc_cpu_release_learning(cpu_view *s);
 /* reuse.c: temporal and spatial combination of a tile's blocks */
 void noc_cpu_temporal(stage_run *run, worker *w, tile t);
 void noc_cpu_spatial(stage_run *run, worker *w, tile t);
+/* Which lanes have less than two earlier frames behind them, into w->lists->rays: a matter of surfaces, not of samples.
+ */
+void noc_cpu_seen_before(stage_run *run, worker *w, tile t);
 
 /* aov.c */
 noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs); /* of the frame that begins */

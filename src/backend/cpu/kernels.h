@@ -196,6 +196,7 @@ typedef struct list_asked {
     float all[BLOCK], bright[BLOCK];            /* list_sums, of near and far entries */
     float n[BLOCK];                             /* draws */
     int most;                                   /* rays of a lane at most */
+    uint32_t fresh;                             /* the caller's: lanes that ask for more */
     uint32_t entry[MOST_SHADOW_RAYS][BLOCK];    /* of a lane's ray */
     float times[MOST_SHADOW_RAYS][BLOCK];       /* drawn so often; 0: no such ray */
     float weighed[MOST_SHADOW_RAYS][BLOCK];

@@ -199,7 +199,8 @@ static void list_share(const struct core_context *tile, const gblock *g, uint32_
         list_sums sums = list_weigh(ctx, seen_surf(&out->seen, l), key, near);
         sums.all = sel(on, sums.all + far.all, K(0.0f));
         sums.bright = sel(on, sums.bright + far.bright, K(0.0f));
-        real n = list_draws(sums, (f1)ctx->frame->shadow_rays, brightness, rng(key, KU(DIM_LIST_RAYS)));
+        real n = list_draws(sums, list_asks((f1)ctx->frame->shadow_rays, mload(out->fresh, l)), brightness,
+                            rng(key, KU(DIM_LIST_RAYS)));
         rstore(out->all + l, sums.all);
         rstore(out->bright + l, sums.bright);
         rstore(out->n + l, n);

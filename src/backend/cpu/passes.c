@@ -429,6 +429,7 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         [NOC_PASS_CANDIDATES_POWER] = candidates_shared,
         [NOC_PASS_CANDIDATES_INFLUENCE] = candidates_influence,
         [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_light_bvh,
+        [NOC_PASS_SEEN_BEFORE] = noc_cpu_seen_before,
         [NOC_PASS_SHARE_RAYS] = share_rays,
         [NOC_PASS_VISIBILITY] = visibility,
         [NOC_PASS_TRACE_SHARED] = noc_cpu_trace_shared,

@@ -125,10 +125,28 @@ static void start(const stage_run *run, const tile_block *block, int set, combin
     c->visible = run->s->b.visible[set][block->at];
 }
 
+static bool has_history(const stage_run *run) { return run->ctx.frame->flags & FRAME_HISTORY && !run->s->past_lost; }
+
+void noc_cpu_seen_before(stage_run *run, worker *w, tile t) {
+    const float two = 2 * (float)run->ctx.frame->draws;
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_cpu_tile_blocks(run, t, blocks);
+    combining *c = w->combining;
+    for (int i = 0; i < n; i++) {
+        uint32_t *fresh = &w->lists->rays.fresh[i];
+        *fresh = lanes_with_surface(&run->s->b.g[run->frame->gbuffer][blocks[i].at]);
+        start(run, &blocks[i], run->stage->target, c);
+        if (!has_history(run) || !fetch_history(run, c))
+            continue;
+        for (int l = 0; l < BLOCK; l++)
+            *fresh &= ~((uint32_t)(c->n->r.m[l] >= two) << l);
+    }
+}
+
 void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks), count = 0;
-    if (!(run->ctx.frame->flags & FRAME_HISTORY) || run->s->past_lost)
+    if (!has_history(run))
         return;
     for (int i = 0; i < n; i++) {
         combining *c = &w->combining[count];
