@@ -1,7 +1,6 @@
 /* core/list_faces.h: pixels of a block that see alike weigh the far lights of their tile's list together, as one face.
  * What chooses a ray need not be exact (core/list_sketch.h): sixteen lights are weighed at a time, instead of one for
- * sixteen pixels. Lights that are near for a face, and those without a sketch, each of its pixels weighs alone
- * (core/list_rays.h).
+ * sixteen pixels. Lights that are near for a face each of its pixels weighs alone (core/list_rays.h).
  *
  * Entries lie in rows of 16 places, so that the order of the columns, each from its first row to its last, is that of
  * the entries: a list has list_rows(count) of them, and place c of row r holds entry c * rows + r. Sums go down the
@@ -143,8 +142,8 @@ FN1 face_sums weigh_face(CTX u1 number, list_face f, u1 rows) {
             list_priors b = prior_row(PASS row, l);
             real d2 = sketch_distance2(k, s.p);
             mask some = b.share > K(0.0f);
-            mask near = or_(k.shape == KU(SKETCH_NONE), sketch_near(k, q, d2, K(f.around)));
-            real p = sel(and_(some, not_(near)), sketch_target(s, q, k, d2, K(f.around), K(f.spread)), K(0.0f));
+            mask near = sketch_near(s, q, k, d2, K(f.around));
+            real p = sel(and_(some, not_(near)), sketch_target(PASS s, q, k, d2, K(f.around), K(f.spread)), K(0.0f));
             near_bits_store(PASS number, row, l, and_(some, near));
             far_store(PASS number, row, l, all);
             EXACT real more = all + p * b.share;

@@ -27,10 +27,12 @@
 #define LIST_FACES 16
 
 /* Shapes of lights in brief (core/list_sketch.h), and words of a sketch. */
-#define SKETCH_NONE 0u /* only the light itself tells */
 #define SKETCH_ROUND 1u
 #define SKETCH_FLAT 2u
 #define SKETCH_TWO_SIDED 3u
-#define SKETCH_WORDS 12
+#define SKETCH_SPOT 4u
+#define SKETCH_PROFILE 5u /* and above */
+#define SKETCH_NUMBER 3
+#define SKETCH_WORDS 16
 
 #endif

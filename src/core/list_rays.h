@@ -72,10 +72,10 @@ FN real found_w(CTX u1 ray);                             /* 0 where the ray was 
 FN real list_steer(CTX surf s, sketch_surf q, mask on, u1 entry, u1 place, u32 shift_u, u32 shift_v) {
     list_sketch k = sketch_load(PASS place);
     real d2 = sketch_distance2(k, s.p);
-    mask near = and_(on, or_(k.shape == KU(SKETCH_NONE), sketch_near(k, q, d2, K(0.0f))));
+    mask near = and_(on, sketch_near(s, q, k, d2, K(0.0f)));
     real p = K(0.0f);
     if (ANY(and_(on, not_(near))))
-        p = sel(on, sketch_target(s, q, k, d2, K(0.0f), K(0.0f)), p);
+        p = sel(on, sketch_target(PASS s, q, k, d2, K(0.0f), K(0.0f)), p);
     if (ANY(near)) {
         light l = light_splat(PASS entry_load(PASS entry).light);
         p = sel(near, target(PASS s, l, list_u(shift_u, KU(entry)), list_v(shift_v, KU(entry))), p);

@@ -3,10 +3,12 @@
  * it, and what it then chooses is evaluated in full (core/light.h) and divided by the very weight that chose it
  * (core/list_rays.h).
  *
- * From afar is beyond SKETCH_FAR radii of what the light lies in, and where the surface is glossy so far that the light
- * is narrower than the lobe. Spots and lights with a profile have no sketch. What the sketch gives is 0 only where no
- * place of the light reaches any of the surfaces, and no place of a flat light brings more than four times of it: a
- * surface that sees the light edge on takes the mean of the cosine at its middle and at the farthest it may reach. */
+ * From afar is beyond SKETCH_FAR radii of what the light lies in. About where a glossy surface mirrors the eye it is so
+ * far that the light is narrower than the lobe; and with a profile so far that the intensity hardly turns. What the
+ * sketch gives is 0 only where no place of the light reaches any of the surfaces, and no place of a flat light brings
+ * more than four times of it: a surface that sees the light edge on takes the mean of the cosine at its middle and at
+ * the farthest it may reach, and so does one beside the cone of a spot. A profile's intensity is the one towards it,
+ * but no less than a quarter of the largest around in its table, nor than a 64th of its peak. */
 #ifndef CORE_LIST_SKETCH_H
 #define CORE_LIST_SKETCH_H
 
@@ -14,15 +16,20 @@
 #include "core/reservoir.h"
 
 #define SKETCH_FAR 3.0f
-#define SKETCH_FAR_GLOSSY 1.5f /* radii, over alpha */
+#define SKETCH_FAR_GLOSSY 1.5f   /* radii, over alpha */
+#define SKETCH_MIRROR 3.0f       /* widths from where the surface mirrors the eye */
+#define SKETCH_FAR_PROFILE 16.0f /* radii, so that directions are within PROFILE_AROUND */
+#define SKETCH_PEAK 0.015625f    /* of the largest intensity, at least */
 
 struct list_sketch {
     v3 middle;
     real radius; /* m around the middle */
-    v3 normal;   /* of flat lights, the side that shines; as long as the area, m2; else 0 */
-    real size;   /* that length */
-    u32 shape;   /* SKETCH_NONE, ... */
-    v3 shine;    /* parts of luminance in cd/m2 (flat) or cd (round), by channel */
+    v3 normal;   /* of flat lights, the side that shines; as long as the area, m2. Spot, profile: the record's a */
+    real size;   /* flat, spot: that length; profile: the radius of what its intensity is told at each place of, m */
+    u32 shape;   /* SKETCH_ROUND, ...; a profile's number in bits SKETCH_NUMBER and up */
+    v3 shine;    /* parts of luminance in cd/m2 (flat), cd (round, spot) or lm (profile), by channel */
+    v3 beside;   /* profile: the record's b */
+    real level;  /* spot: o; profile: its least intensity here, cd/lm; else 0 */
 };
 
 /* A surface as sketches are looked at from. */
@@ -81,14 +88,24 @@ FN list_sketch sketch_of(light l) {
     k.normal = mul3(cross3(l.a, l.b), size);
     k.size = sqrt_(dot3(k.normal, k.normal));
     EXACT real face = K(CORE_PI) * l.radius * l.radius;
-    face = sel(sphere, face, K(1.0f));
+    face = sel(and_(sphere, profile_of(l) == KU(0u)), face, K(1.0f));
     EXACT real red = l.e.x * K(0.2126f) * face;
     EXACT real green = l.e.y * K(0.7152f) * face;
     EXACT real blue = l.e.z * K(0.0722f) * face;
     k.shine = V3(red, green, blue);
     u32 sided = selu((l.flags & KU(LIGHT_TWO_SIDED)) != KU(0u), KU(SKETCH_TWO_SIDED), KU(SKETCH_FLAT));
-    mask none = or_(l.kind == KU(LIGHT_SPOT), profile_of(l) != KU(0u));
-    k.shape = selu(none, KU(SKETCH_NONE), selu(round, KU(SKETCH_ROUND), sided));
+    k.shape = selu(round, KU(SKETCH_ROUND), sided);
+    k.beside = l.b;
+    k.level = K(0.0f);
+    mask spot = l.kind == KU(LIGHT_SPOT);
+    mask profiled = profile_of(l) != KU(0u);
+    if (ANY(or_(spot, profiled))) {
+        k.shape = selu(spot, KU(SKETCH_SPOT), k.shape);
+        k.shape = selu(profiled, KU(SKETCH_PROFILE) | shl(profile_of(l), SKETCH_NUMBER), k.shape);
+        k.normal = sel3(or_(spot, profiled), l.a, k.normal);
+        k.size = sel(spot, sqrt_(dot3(l.a, l.a)), sel(profiled, sel(disc, l.radius, K(0.0f)), k.size));
+        k.level = sel(spot, l.b.x, sel(profiled, l.area * K(SKETCH_PEAK), K(0.0f)));
+    }
     return k;
 }
 
@@ -155,23 +172,45 @@ FN real sketch_distance2(list_sketch k, v3 y) {
 }
 
 /* Is it near for some surface around? */
-FN mask sketch_near(list_sketch k, sketch_surf q, real d2, real around) {
+FN mask sketch_near(surf s, sketch_surf q, list_sketch k, real d2, real around) {
     EXACT real wide = k.radius + K(2.0f) * around;
-    return d2 < q.reach * (wide * wide);
+    real wide2 = wide * wide;
+    EXACT real turned = K(SKETCH_FAR_PROFILE) * (k.size + around);
+    mask near = or_(d2 < K(SKETCH_FAR * SKETCH_FAR) * wide2, and_(k.shape >= KU(SKETCH_PROFILE), d2 < turned * turned));
+    mask close = and_(q.shiny, d2 < q.reach * wide2);
+    if (ANY(close)) {
+        v3 w = sub3(k.middle, s.p);
+        real inv = quick_inverse_root(d2);
+        v3 h = add3(mul3(w, inv), s.wo);
+        EXACT real nh = dot3(s.n, w) * inv + q.nv;
+        EXACT real beside = (dot3(h, h) - nh * nh) * d2;
+        near = or_(near, and_(close, beside < K(SKETCH_MIRROR * SKETCH_MIRROR) * wide2));
+    }
+    return near;
 }
 
 /* About the target of any place on the light, which is not near, for surfaces no farther than `around` from s (m) whose
  * normals' angles to that of s have no larger sine than `spread`. */
-FN real sketch_target(surf s, sketch_surf q, list_sketch k, real d2, real around, real spread) {
+FN real sketch_target(CTX surf s, sketch_surf q, list_sketch k, real d2, real around, real spread) {
     v3 w = sub3(k.middle, s.p);
     real inv = quick_inverse_root(d2);
     EXACT real better = inv * (K(1.5f) - K(0.5f) * d2 * inv * inv); /* lobes are narrow */
     inv = better;
     v3 wi = mul3(w, inv);
-    real facing = K(0.0f) - dot3(k.normal, wi);
+    real facing = k.level - dot3(k.normal, wi);
     facing = sel(k.shape == KU(SKETCH_TWO_SIDED), abs_(facing), facing);
     EXACT real behind = K(0.5f) * (facing + k.size * around * inv);
     facing = sel(k.shape == KU(SKETCH_ROUND), K(1.0f), max_(facing, max_(behind, K(0.0f))));
+    mask beam = k.shape >= KU(SKETCH_SPOT);
+    if (ANY(beam)) {
+        mask spot = k.shape == KU(SKETCH_SPOT);
+        facing = sel(spot, min_(facing, K(1.0f)), facing);
+        facing = sel(spot, facing * facing, facing);
+        mask profiled = and_(beam, not_(spot));
+        u32 number = selu(profiled, shr(k.shape, SKETCH_NUMBER), KU(1u));
+        v3 away = sub3(fill3(K(0.0f)), wi);
+        facing = sel(profiled, profile_about(PASS number, k.normal, k.beside, away, k.level), facing);
+    }
     real n_wi = dot3(s.n, wi);
     EXACT real rim = K(0.5f) * (n_wi + ((k.radius + around) * inv + spread));
     real nl = max_(n_wi, max_(rim, K(0.0f)));

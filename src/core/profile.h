@@ -29,8 +29,20 @@ FN profile_cell profile_load(CTX u32 place);
 profile_cell profile_load(uint place);
 #endif
 
-/* Candela a lumen of profile `number`, in the frame a, b, towards d, which need not be unit. */
-FN real profile_towards(CTX u32 number, v3 a, v3 b, v3 d) {
+/* Candela a lumen: towards a direction, and the largest at the corners of the step of the table that it lies in; and by
+ * how much the direction is beyond the last gamma, in turns. */
+struct profile_value {
+    real here;
+    real most;
+    real beyond;
+};
+
+#ifndef CORE_GLSL
+typedef struct profile_value profile_value;
+#endif
+
+/* Of profile `number`, in the frame a, b, towards d, which need not be unit. */
+FN profile_value profile_look(CTX u32 number, v3 a, v3 b, v3 d) {
     EXACT real scale = K(1.0f) / sqrt_(max_(dot3(a, a), K(1e-30f)));
     EXACT real x = dot3(a, d) * scale;
     EXACT real y = dot3(b, d) * scale;
@@ -54,7 +66,22 @@ FN real profile_towards(CTX u32 number, v3 a, v3 b, v3 d) {
     EXACT real low = v.near_ + (v.next - v.near_) * t;
     EXACT real high = v.far_ + (v.last - v.far_) * t;
     EXACT real value = low + (high - low) * s;
-    return sel(gamma <= head.last, max_(value, K(0.0f)), K(0.0f));
+    profile_value at;
+    at.here = sel(gamma <= head.last, max_(value, K(0.0f)), K(0.0f));
+    at.most = max_(max_(v.near_, v.next), max_(v.far_, v.last));
+    EXACT real beyond = gamma - head.last;
+    at.beyond = beyond;
+    return at;
+}
+
+FN real profile_towards(CTX u32 number, v3 a, v3 b, v3 d) { return profile_look(PASS number, a, b, d).here; }
+
+/* About that of directions no farther than PROFILE_AROUND turns from one, but at least so much where any of them may
+ * get some. */
+#define PROFILE_AROUND 0.0102f
+FN real profile_about(CTX u32 number, v3 a, v3 b, v3 d, real least) {
+    profile_value at = profile_look(PASS number, a, b, d);
+    return sel(at.beyond <= K(PROFILE_AROUND), max_(max_(at.here, K(0.25f) * at.most), least), K(0.0f));
 }
 
 #endif

@@ -238,17 +238,19 @@ void sketch_store(uint row, int l, list_sketch k) {
         put(sketch_word(at, c), k.middle[c]);
         put(sketch_word(at, 4 + c), k.normal[c]);
         put(sketch_word(at, 8 + c), k.shine[c]);
+        put(sketch_word(at, 12 + c), k.beside[c]);
     }
     put(sketch_word(at, 3), k.radius);
     put(sketch_word(at, 7), k.size);
     put(sketch_word(at, 11), k.shape);
+    put(sketch_word(at, 15), k.level);
 }
 list_sketch sketch_load(uint at) {
     float f[SKETCH_WORDS];
     for (int c = 0; c < SKETCH_WORDS; c++)
         f[c] = wf(sketch_word(at, c));
     return list_sketch(vec3(f[0], f[1], f[2]), f[3], vec3(f[4], f[5], f[6]), f[7], wu(sketch_word(at, 11)),
-                       vec3(f[8], f[9], f[10]));
+                       vec3(f[8], f[9], f[10]), vec3(f[12], f[13], f[14]), f[15]);
 }
 list_sketch sketch_row(uint row, int l) { return sketch_load(16u * row + uint(l)); }
 

@@ -36,8 +36,10 @@ static inline light any_light(dice *d, u32 kind, bool profile) {
         l.radius = sqrtf(kind == LIGHT_TRIANGLE ? longest : max_(longest, dot3(c, c)));
     }
     l.flags = kind != LIGHT_SPHERE && kind != LIGHT_POINT && uniform(d, 0, 1) < .3 ? LIGHT_TWO_SIDED : 0;
-    if (profile && (kind == LIGHT_SPHERE || kind == LIGHT_POINT || kind == LIGHT_DISC))
+    if (profile && (kind == LIGHT_SPHERE || kind == LIGHT_POINT || kind == LIGHT_DISC)) {
         l.flags |= 1 << LIGHT_PROFILE;
+        l.area = .4f;
+    }
     return l;
 }
 

@@ -39,6 +39,10 @@ FN void sketch_store(CTX u1 row, int l, list_sketch k) {
     words_store(PASS sketch_word(PASS at, 9u), bits_of_real(k.shine.y));
     words_store(PASS sketch_word(PASS at, 10u), bits_of_real(k.shine.z));
     words_store(PASS sketch_word(PASS at, 11u), k.shape);
+    words_store(PASS sketch_word(PASS at, 12u), bits_of_real(k.beside.x));
+    words_store(PASS sketch_word(PASS at, 13u), bits_of_real(k.beside.y));
+    words_store(PASS sketch_word(PASS at, 14u), bits_of_real(k.beside.z));
+    words_store(PASS sketch_word(PASS at, 15u), bits_of_real(k.level));
 }
 FN real sketch_field(CTX u1 row, int l, u1 field) {
     return real_of_bits(words_load(PASS sketch_word(PASS 16u * row + U32(l), field)));
@@ -51,6 +55,8 @@ FN list_sketch sketch_row(CTX u1 row, int l) {
     k.size = sketch_field(PASS row, l, 7u);
     k.shine = V3(sketch_field(PASS row, l, 8u), sketch_field(PASS row, l, 9u), sketch_field(PASS row, l, 10u));
     k.shape = words_load(PASS sketch_word(PASS 16u * row + U32(l), 11u));
+    k.beside = V3(sketch_field(PASS row, l, 12u), sketch_field(PASS row, l, 13u), sketch_field(PASS row, l, 14u));
+    k.level = sketch_field(PASS row, l, 15u);
     return k;
 }
 FN list_sketch sketch_load(CTX u1 at) {
@@ -61,6 +67,8 @@ FN list_sketch sketch_load(CTX u1 at) {
     k.size = K(f1_of_bits(word_load(PASS sketch_word(PASS at, 7u))));
     k.shine = spread3(word3_load(PASS sketch_word(PASS at, 8u), 32u));
     k.shape = KU(word_load(PASS sketch_word(PASS at, 11u)));
+    k.beside = spread3(word3_load(PASS sketch_word(PASS at, 12u), 32u));
+    k.level = K(f1_of_bits(word_load(PASS sketch_word(PASS at, 15u))));
     return k;
 }
 

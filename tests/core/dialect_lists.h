@@ -346,7 +346,7 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     put_v3(PASS item, LISTS_FIRST + 83, brief.normal);
     put_v3(PASS item, LISTS_FIRST + 86, brief.shine);
     put_u32(PASS item, LISTS_FIRST + 89, brief.shape);
-    put_real(PASS item, LISTS_FIRST + 90, sketch_target(s, q, brief, d2, rng(key, KU(5028u)), K(0.125f)));
+    put_real(PASS item, LISTS_FIRST + 90, sketch_target(PASS s, q, brief, d2, rng(key, KU(5028u)), K(0.125f)));
     put_real(PASS item, LISTS_FIRST + 91, sketch_gloss(s, q, s.n, rng(key, KU(5009u)), rng(key, KU(5030u))));
     put_real(PASS item, LISTS_FIRST + 92, quick_inverse_root(d2));
     EXACT real squares = rng(key, KU(5007u)) * K(1e-6f);

@@ -16,6 +16,6 @@
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
 #define PRESAMPLED_SLOTS 28 /* dialect_presampled.h */
 #define ITEM_SLOTS (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
-#define TILE_WORDS 3648 /* of memory for a tile */
+#define TILE_WORDS 3776 /* of memory for a tile */
 
 #endif

@@ -30,7 +30,7 @@ typedef struct ratios {
     int near, missed, far, beyond; /* beyond: four times the sketch somewhere */
 } ratios;
 
-static ratios look_at_lights(bool glossy, const u32 *kinds, int count) {
+static ratios look_at_lights(bool glossy, const u32 *kinds, int count, bool profile) {
     enum { TRIALS = 30000, STEPS = 6 };
     const struct core_context none = { 0 }, *ctx = &none;
     dice d = { 5 };
@@ -38,12 +38,12 @@ static ratios look_at_lights(bool glossy, const u32 *kinds, int count) {
     for (int i = 0; i < TRIALS; i++) {
         surf s = any_surface(&d, glossy);
         sketch_surf q = sketch_surf_of(s);
-        light l = any_light(&d, kinds[i % count], false);
+        light l = any_light(&d, kinds[i % count], profile);
         place_light(&d, &l, s, (double)sqrtf(q.reach) * uniform(&d, .98, 1.1) * (i % 3 ? 1 : 8));
         list_sketch k = sketch_of(l);
         float d2 = sketch_distance2(k, s.p), most = 0;
         double sum = 0;
-        if (sketch_near(k, q, d2, 0)) {
+        if (sketch_near(s, q, k, d2, 0)) {
             r.near++;
             continue;
         }
@@ -52,7 +52,7 @@ static ratios look_at_lights(bool glossy, const u32 *kinds, int count) {
             most = max_(most, p);
             sum += (double)p / (STEPS * STEPS);
         }
-        float about = sketch_target(s, q, k, d2, 0, 0);
+        float about = sketch_target(PASS s, q, k, d2, 0, 0);
         r.missed += most > 0 && !(about > 0);
         if (!(about > 0))
             continue;
@@ -71,7 +71,7 @@ static const u32 extended[] = { LIGHT_DISC, LIGHT_TRIANGLE, LIGHT_PARALLELOGRAM,
 
 static void matte_surfaces(void **state) {
     (void)state;
-    ratios r = look_at_lights(false, extended, 4);
+    ratios r = look_at_lights(false, extended, 4, false);
     assert_true(r.near > 1000 && r.far > 5000);
     assert_int_equal(r.missed, 0);
     assert_true(fabs(mean_of(&r.mean) - 1) < .03 && r.most < 4);
@@ -80,7 +80,7 @@ static void matte_surfaces(void **state) {
 /* A narrow lobe at a grazing angle is narrower still beside its plane. */
 static void glossy_surfaces(void **state) {
     (void)state;
-    ratios r = look_at_lights(true, extended, 4);
+    ratios r = look_at_lights(true, extended, 4, false);
     assert_true(r.near > 1000 && r.far > 5000);
     assert_int_equal(r.missed, 0);
     assert_true(fabs(mean_of(&r.mean) - 1) < .1 && r.beyond < r.far / 300);
@@ -90,23 +90,23 @@ static void glossy_surfaces(void **state) {
 static void points(void **state) {
     const u32 point = LIGHT_POINT;
     (void)state;
-    ratios r = look_at_lights(false, &point, 1);
+    ratios r = look_at_lights(false, &point, 1, false);
     assert_true(r.near == 0 && r.missed == 0 && r.most < 1.02 && fabs(mean_of(&r.mean) - 1) < .01);
-    r = look_at_lights(true, &point, 1);
+    r = look_at_lights(true, &point, 1, false);
     assert_true(r.near == 0 && r.missed == 0 && r.most < 2);
 }
 
-/* Whatever a spot or a profile sends aside, there is no sketch of it. */
-static void none_of_beams(void **state) {
+/* A spot's cone, and what a profile sends which way. */
+static void beams(void **state) {
+    static const u32 spot = LIGHT_SPOT, shaped[] = { LIGHT_POINT, LIGHT_DISC, LIGHT_SPHERE };
     (void)state;
-    dice d = { 9 };
-    light l = any_light(&d, LIGHT_SPOT, false);
-    assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
-    l = any_light(&d, LIGHT_DISC, false);
-    assert_int_equal(sketch_of(l).shape, l.flags ? SKETCH_TWO_SIDED : SKETCH_FLAT);
-    l.flags |= 1 << LIGHT_PROFILE;
-    assert_int_equal(sketch_of(l).shape, SKETCH_NONE);
-    assert_int_equal(sketch_of(any_light(&d, LIGHT_SPHERE, false)).shape, SKETCH_ROUND);
+    for (int glossy = 0; glossy < 2; glossy++) {
+        ratios r = look_at_lights(glossy, &spot, 1, false);
+        assert_true(r.near == 0 && r.missed == 0 && r.most < (glossy ? 2 : 1.2));
+        r = look_at_lights(glossy, shaped, 3, true);
+        assert_true(r.far > 5000 && r.missed == 0 && r.beyond < r.far / 200);
+        assert_true(glossy || (r.most < 4 && fabs(mean_of(&r.mean) - 1) < .1));
+    }
 }
 
 static void inverse_roots(void **state) {
@@ -236,7 +236,7 @@ static void none_missed(void **state) {
         double wide = uniform(&d, 0, .3);
         ctx->count = ENTRIES;
         for (u32 i = 0; i < ENTRIES; i++) {
-            ctx->light[i] = any_light(&d, i % 5, false);
+            ctx->light[i] = any_light(&d, i % 6, i % 4 == 3);
             ctx->weight[i] = 1;
             place_light(&d, &ctx->light[i], s, uniform(&d, 2, 8));
             if (i % 2) { /* beside the plane of the light */
@@ -293,7 +293,7 @@ static void faces_of_blocks(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matte_surfaces), cmocka_unit_test(glossy_surfaces), cmocka_unit_test(points),
-        cmocka_unit_test(none_of_beams),  cmocka_unit_test(inverse_roots),   cmocka_unit_test(chosen_by_what_divides),
+        cmocka_unit_test(beams),          cmocka_unit_test(inverse_roots),   cmocka_unit_test(chosen_by_what_divides),
         cmocka_unit_test(none_missed),    cmocka_unit_test(faces_of_blocks),
     };
     return cmocka_run_group_tests_name("core/list_sketch", tests, NULL, NULL);

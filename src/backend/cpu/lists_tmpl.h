@@ -36,34 +36,28 @@ FN u32 entry_lights(CTX u1 row, int l, u1 rows, u1 count) {
     return uload(at);
 }
 FN void sketch_store(CTX u1 row, int l, list_sketch k) {
-    const real field[SKETCH_WORDS] = {
-        k.middle.x, k.middle.y, k.middle.z, k.radius,  k.normal.x, k.normal.y,
-        k.normal.z, k.size,     k.shine.x,  k.shine.y, k.shine.z,  real_of_bits(k.shape)
-    };
+    const real field[SKETCH_WORDS] = { k.middle.x, k.middle.y, k.middle.z, k.radius,  k.normal.x, k.normal.y,
+                                       k.normal.z, k.size,     k.shine.x,  k.shine.y, k.shine.z,  real_of_bits(k.shape),
+                                       k.beside.x, k.beside.y, k.beside.z, k.level };
     for (int i = 0; i < SKETCH_WORDS; i++)
         ustore(ctx->at.lists->sketches[i] + 16 * row + l, bits_of_real(field[i]));
 }
+#define SKETCH_FIELDS(word)                                                                                            \
+    (list_sketch) {                                                                                                    \
+        V3(real_of_bits(word(0)), real_of_bits(word(1)), real_of_bits(word(2))), real_of_bits(word(3)),                \
+            V3(real_of_bits(word(4)), real_of_bits(word(5)), real_of_bits(word(6))), real_of_bits(word(7)), word(11),  \
+            V3(real_of_bits(word(8)), real_of_bits(word(9)), real_of_bits(word(10))),                                  \
+            V3(real_of_bits(word(12)), real_of_bits(word(13)), real_of_bits(word(14))), real_of_bits(word(15))         \
+    }
 FN list_sketch sketch_row(CTX u1 row, int l) {
-    const uint32_t(*k)[LIST_ROOM] = ctx->at.lists->sketches;
-#define SKETCH_FIELD(i) real_of_bits(uload(k[i] + 16 * row + l))
-    return (list_sketch){ V3(SKETCH_FIELD(0), SKETCH_FIELD(1), SKETCH_FIELD(2)),
-                          SKETCH_FIELD(3),
-                          V3(SKETCH_FIELD(4), SKETCH_FIELD(5), SKETCH_FIELD(6)),
-                          SKETCH_FIELD(7),
-                          uload(k[11] + 16 * row + l),
-                          V3(SKETCH_FIELD(8), SKETCH_FIELD(9), SKETCH_FIELD(10)) };
-#undef SKETCH_FIELD
+#define ROW_WORD(i) uload(ctx->at.lists->sketches[i] + 16 * row + l)
+    return SKETCH_FIELDS(ROW_WORD);
+#undef ROW_WORD
 }
 FN list_sketch sketch_load(CTX u1 at) {
-    const uint32_t(*k)[LIST_ROOM] = ctx->at.lists->sketches;
-#define SKETCH_FIELD(i) real_of_bits(KU(k[i][at]))
-    return (list_sketch){ V3(SKETCH_FIELD(0), SKETCH_FIELD(1), SKETCH_FIELD(2)),
-                          SKETCH_FIELD(3),
-                          V3(SKETCH_FIELD(4), SKETCH_FIELD(5), SKETCH_FIELD(6)),
-                          SKETCH_FIELD(7),
-                          KU(k[11][at]),
-                          V3(SKETCH_FIELD(8), SKETCH_FIELD(9), SKETCH_FIELD(10)) };
-#undef SKETCH_FIELD
+#define PLACE_WORD(i) KU(ctx->at.lists->sketches[i][at])
+    return SKETCH_FIELDS(PLACE_WORD);
+#undef PLACE_WORD
 }
 FN u32 entry_light(CTX u32 i) { return word_gather(ctx->at.lists->list.light, i); }
 
