@@ -38,11 +38,13 @@ static const variant variants[] = {
     { "ris, power", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_POWER },
     { "ris, influence", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_INFLUENCE },
     { "ris, light-bvh", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LIGHT_BVH },
+    { "pairwise + rays, influence", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true,
+      .candidates = NOC_CANDIDATES_INFLUENCE },
     { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, .candidates = NOC_CANDIDATES_LISTS },
     { "spatial p. + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, NOC_CANDIDATES_LISTS },
 };
-_Static_assert(NOC_COUNT(variants) == NOC_CANDIDATES_COUNT + 9, "ris of every picker, and the other methods");
+_Static_assert(NOC_COUNT(variants) == NOC_CANDIDATES_COUNT + 10, "ris of every picker, and the other methods");
 
 static uint64_t mix(uint64_t h, const void *data, size_t size) {
     const unsigned char *p = data;
