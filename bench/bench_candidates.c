@@ -83,11 +83,12 @@ static uint64_t presampled(const kernels *k, const candidates_job *job, float f0
     for (uint32_t first = 0; first < job->surface_count; first += BLOCK) {
         float *const to[6] = { g.px, g.py, g.pz, g.nx, g.ny, g.nz };
         rblock r;
-        uint32_t block = first / BLOCK;
         for (int j = 0; j < 6; j++)
             memcpy(to[j], job->surfaces[j] + first, BLOCK * sizeof(float));
-        k->presampled(&ctx, &g, 0xffff, (int)(block % 4) * 4, (int)(block / 4) * 4, job->m, samples, subsets, weighed,
-                      &r);
+        uint32_t pixels[BLOCK], subset = k->subset_of(&ctx, first / BLOCK, subsets);
+        for (uint32_t l = 0; l < BLOCK; l++)
+            pixels[l] = first + l;
+        k->presampled(&ctx, &g, 0xffff, pixels, job->m, samples + (size_t)subset * (size_t)job->m, weighed, &r);
         for (int l = 0; l < BLOCK; l++) {
             uint32_t w;
             memcpy(&w, &r.w[l], sizeof(w));

@@ -1,10 +1,20 @@
-/* core/influence_draw.h: candidates of a point that has asked the influence volumes (core/influence.h). Includers
- * supply the bridges. A backend that has memory to wait for may take influence_candidate apart: the light of every
- * candidate first, then those that were drawn from all lights get their densities. */
+/* core/influence_draw.h: candidates of points that have asked the influence volumes (core/influence.h), drawn for many
+ * points at once and kept side by side in memory, as those of core/presampled.h are.
+ *
+ * A set is 16 m samples (light, u, v): the first b rows of 16 come from the lights that the points of its 16 lanes
+ * list, the last u from all lights. Samples are stratified over the list, and over all lights, in their order. A
+ * pixel takes the m samples of its lane: candidate i is any of the 16 of its row alike, for the set is turned at
+ * random. Pixels that ask as one share several sets, each of them one; where 16 pixels do not ask as one, they have a
+ * set of their own, whose lanes draw from a list each.
+ *
+ * The density of a sample is that of core/influence.h, whichever way it came: of those drawn from all lights it is
+ * asked whether the lane's points list them, once a set. Includers supply the bridges. */
 #ifndef CORE_INFLUENCE_DRAW_H
 #define CORE_INFLUENCE_DRAW_H
 
 #include "core/influence.h"
+#include "core/influence_limits.h"
+#include "core/presampled.h"
 
 /* What a point asked with, and found. */
 struct influence_asked {
@@ -23,18 +33,12 @@ FN u32 influence_volume(CTX u32 id);   /* of a light */
 FN influence influence_load(CTX u32 volume);
 FN mask influence_seen(CTX u32 volume, influence_region r); /* does its box meet the region? true where it has none */
 
-/* Is candidate i drawn from all lights? */
-FN1 b1 influence_from_all(int i, int every) { return i % every == 0; }
-
-/* The light of candidate i. n_l: lights of the scene. */
-FN u32 influence_light(CTX influence_asked a, u32 key, u32 n_l, int i, int every) {
-    u32 bits = rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i)));
+/* The light that these bits choose from lists; from all n_l lights where a point lists none. */
+FN u32 influence_from_list(CTX influence_asked a, u32 bits, u32 n_l) {
     u32 id = scale_u32(bits, n_l);
-    if (!influence_from_all(i, every)) {
-        mask any = a.count > KU(0u);
-        if (ANY(any))
-            id = selu(any, influence_found(PASS a.from + scale_u32(bits, a.count)), id);
-    }
+    mask any = a.count > KU(0u);
+    if (ANY(any))
+        id = selu(any, influence_found(PASS a.from + scale_u32(bits, a.count)), id);
     return id;
 }
 
@@ -48,19 +52,10 @@ FN mask influence_lists(CTX u32 volume, influence v, influence_asked a, real sca
     return held;
 }
 
-/* Candidate i of m. */
-FN pick influence_candidate(CTX influence_asked a, u32 key, u32 n_l, real scale, b1 strongest, int i, int m,
-                            int every) {
-    pick p;
-    p.light = influence_light(PASS a, key, n_l, i, every);
-    mask listed = a.count > KU(0u);
-    if (influence_from_all(i, every)) {
-        u32 volume = influence_volume(PASS p.light);
-        listed = influence_lists(PASS volume, influence_load(PASS volume), a, scale, strongest);
-    }
+/* 1 / pmf of a light, given whether the point lists it. */
+FN real influence_inverse(mask listed, influence_asked a, u32 n_l, int m, int every) {
     EXACT real inverse = K(1.0f) / influence_pmf(listed, a.count, n_l, m, every);
-    p.inverse = inverse;
-    return p;
+    return inverse;
 }
 
 #endif

@@ -66,18 +66,18 @@ FN1 u1 presample_key(u1 seed, u1 number, u1 frame, u1 of_block) {
 }
 
 /* Bits that choose sample i of n: anywhere in an even share of their own of all numbers, which begin anywhere. */
-FN u32 presample_bits(u1 key, u32 i, u1 n) {
-    u32 share = KU(0xffffffffu / n);
-    return KU(hash_u1(key)) + i * share + scale_u32(rng_bits(KU(key), KU(3u) * i + KU(1u)), share);
+FN1 u1 presample_share(u1 n) { return 0xffffffffu / n; }
+FN u32 presample_bits(u1 key, u32 i, u1 share) {
+    return KU(hash_u1(key)) + i * KU(share) + scale_u32(rng_bits(KU(key), KU(3u) * i + KU(1u)), KU(share));
 }
 FN real presample_choice(u1 key, u32 i) { return rng(KU(key), KU(3u) * i + KU(2u)); } /* for who needs one more */
 FN u32 presample_place(u1 key, u32 i) { return rng_bits(KU(key), KU(3u) * i + KU(3u)); }
 
 /* Where in its subset sample i goes, of 16 that are candidates of the same number: one turn for all of the subset. */
-FN1 u1 presample_turned(u1 key, u1 i) {
-    u1 turn = shr(hash_u1(key ^ 0x5bd1e995u), 28);
-    return (i & 0xfffffff0u) | ((i + turn) & 15u);
-}
+FN1 u1 presample_turn(u1 key) { return shr(hash_u1(key ^ 0x5bd1e995u), 28); }
+FN1 u1 presample_turned(u1 key, u1 i) { return (i & 0xfffffff0u) | ((i + presample_turn(key)) & 15u); }
+/* Which sample is at that lane of that row of 16. */
+FN u32 presample_at(u1 key, u1 row, u32 lane) { return KU(row * 16u) + ((lane - KU(presample_turn(key))) & KU(15u)); }
 
 /* Has it a brief form at all? Else the target is always asked. */
 FN mask presample_plain(light l) { return not_(or_(l.kind == KU(LIGHT_SPOT), profile_of(l) != KU(0u))); }

@@ -185,7 +185,11 @@ static void run_all(const kernels *k, world *w, combining *b, trace *t) {
     static float weighed[13][BLOCK];
     for (uint32_t i = 0; i < 2; i++)
         k->presample(&w->ctx, i, 13, false, drawn, samples + (size_t)13 * i);
-    k->presampled(&w->ctx, g, 0xbeef, 4, 8, 13, samples, 2, weighed, &t->candidates);
+    uint32_t pixels[BLOCK];
+    for (uint32_t l = 0; l < BLOCK; l++)
+        pixels[l] = 7 + 3 * l;
+    k->presampled(&w->ctx, g, 0xbeef, pixels, 13, samples + (size_t)13 * k->subset_of(&w->ctx, 9, 2), weighed,
+                  &t->candidates);
     fetch_all(k, w, t);
     t->front = k->history_places(&w->ctx, g, t->x, t->y);
     k->segments(&w->ctx, g, own->light, own->u, own->v, &t->segments);

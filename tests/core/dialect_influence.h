@@ -17,20 +17,22 @@ FN u32 influence_found(CTX u32 place) { return place * KU(7u); }
 FN u32 influence_volume(CTX u32 id) { return shr(id, 1); }
 FN mask influence_seen(CTX u32 volume, influence_region r) { return (volume & KU(3u)) != KU(0u); }
 
-/* Slots 0 to 4: one is drawn from all lights, one from those that are listed. */
+/* Slots 0 to 4: one that is drawn from a list, and what goes for all of a set. */
 FN void influence_draws(CTX u32 item, u32 key, surf s) {
     influence_asked a;
     a.r = influence_point(s.p, s.n);
     a.least = rng(key, KU(3200u)) * K(0.01f);
     a.count = shr(rng_bits(key, KU(3201u)), 28);
     a.from = shr(rng_bits(key, KU(3202u)), 26);
-    pick all = influence_candidate(PASS a, key, KU(KERNEL_LIGHTS), K(8.0f), true, 0, 32, 4);
-    pick listed = influence_candidate(PASS a, key, KU(KERNEL_LIGHTS), K(8.0f), true, 1, 32, 4);
-    put_u32(PASS item, INFLUENCE_FIRST + 0, all.light);
-    put_real(PASS item, INFLUENCE_FIRST + 1, all.inverse);
-    put_u32(PASS item, INFLUENCE_FIRST + 2, listed.light);
-    put_real(PASS item, INFLUENCE_FIRST + 3, listed.inverse);
-    mask held = influence_lists(PASS all.light, influence_load(PASS all.light), a, K(50.0f), false);
+    u1 row = ITEM_COUNT & 31u;
+    u32 at = presample_at(row + 7u, row, shr(key, 28));
+    u32 all = scale_u32(presample_bits(row, at, presample_share(512u)), KU(KERNEL_LIGHTS));
+    mask held = influence_lists(PASS all, influence_load(PASS all), a, K(8.0f), true);
+    put_u32(PASS item, INFLUENCE_FIRST + 0, influence_from_list(PASS a, rng_bits(key, KU(3203u)), KU(KERNEL_LIGHTS)));
+    put_real(PASS item, INFLUENCE_FIRST + 1, influence_inverse(held, a, KU(KERNEL_LIGHTS), 32, 4));
+    put_u32(PASS item, INFLUENCE_FIRST + 2, at + KU(influence_listed(row + 1u, 4u) * 64u + influence_sets(row)));
+    put_real(PASS item, INFLUENCE_FIRST + 3, influence_inverse(a.count > KU(0u), a, KU(KERNEL_LIGHTS), 32, 4));
+    held = influence_lists(PASS all, influence_load(PASS all), a, K(50.0f), false);
     put_u32(PASS item, INFLUENCE_FIRST + 4, selu(held, KU(1u), KU(0u)));
 }
 

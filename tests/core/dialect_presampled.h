@@ -52,7 +52,7 @@ FN void presampling(CTX u32 item, u32 key, surf s) {
     u1 subset = presample_key(7u, ITEM_COUNT & 15u, 3u, 1u);
     u32 i = shr(dialect_shared, 25);
     put_u32(PASS item, PRESAMPLED_FIRST + 15, KU(subset + presample_subsets(1u + (ITEM_COUNT & 15u), 5000u)) + item);
-    put_u32(PASS item, PRESAMPLED_FIRST + 16, presample_bits(subset, i, 80u));
+    put_u32(PASS item, PRESAMPLED_FIRST + 16, presample_bits(subset, i, presample_share(80u)));
     put_real(PASS item, PRESAMPLED_FIRST + 17, presample_choice(subset, i));
     put_u32(PASS item, PRESAMPLED_FIRST + 18, presample_place(subset, i));
     put_u32(PASS item, PRESAMPLED_FIRST + 19, KU(presample_turned(subset, ITEM_COUNT & 31u)) + item);

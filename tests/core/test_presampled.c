@@ -174,6 +174,7 @@ static void samples_are_alike(void **state) {
         for (u1 i = 32; i < 48; i++) {
             assert_true(presample_turned(key, i) >= 32 && presample_turned(key, i) < 48);
             seen |= 1u << (presample_turned(key, i) - 32);
+            assert_true(presample_at(key, 2, presample_turned(key, i) & 15) == i);
         }
         assert_true(seen == 0xffff);
     }
@@ -184,7 +185,7 @@ static void samples_are_alike(void **state) {
     for (u32 i = 0; i < N; i += 511) {
         double bins[BINS] = { 0 }, off = 0;
         for (u1 tile = 0; tile < TILES; tile++)
-            bins[presample_bits(presample_key(9, tile, 4, 0), i, N) >> 26]++;
+            bins[presample_bits(presample_key(9, tile, 4, 0), i, presample_share(N)) >> 26]++;
         for (int k = 0; k < BINS; k++)
             off += (bins[k] - (double)TILES / BINS) * (bins[k] - (double)TILES / BINS) / ((double)TILES / BINS);
         assert_true(off < BINS - 1 + 5 * sqrt(2.0 * (BINS - 1)));

@@ -108,8 +108,8 @@ typedef struct asked {
     gblock g, before; /* the second and the first block of a tile */
     surf y[BLOCK];    /* of g */
     noc_found found;
-    uint32_t light[DRAWS + PICK_AHEAD][BLOCK];
-    float inverse[DRAWS + PICK_AHEAD][BLOCK];
+    presample_row rows[DRAWS], shared[DRAWS / EVERY];
+    presample_pick1 drawn[DRAWS / EVERY * BLOCK];
     double wrong; /* share added to the pmf of odd lights: a test of the test */
 } asked;
 
@@ -170,7 +170,8 @@ static void draw(asked *a) {
     a->frame.index++;
     a->k->influence_find(&a->ctx, (const gblock *const[2]){ &a->before, &a->g },
                          (const uint32_t[2]){ 0xffff, LANES_ASKED }, 2, &a->found);
-    a->k->pick_influence(&a->ctx, &a->found, 1, 8, 12, DRAWS, &(pick_block){ a->light, a->inverse });
+    a->k->presample(&a->ctx, 3, DRAWS / EVERY, false, a->drawn, a->shared);
+    a->k->influence_draw(&a->ctx, &a->found, a->found.of[1], 5, DRAWS, a->shared, a->rows);
 }
 
 static const noc_found_group *found_by(const asked *a, int l) { return &a->found.group[a->found.of[1][l]]; }
@@ -225,11 +226,11 @@ static void draws_are_pmf(asked *a) {
         draw(a);
         for (int l = 0; l < BLOCK; l++)
             for (int i = 0; i < DRAWS && (LANES_ASKED >> l & 1); i++) {
-                assert_true(a->light[i][l] < a->scene->lights.len);
-                double x = pmf(a, a->light[i][l], l) * a->inverse[i][l];
+                assert_true(a->rows[i].light[l] < a->scene->lights.len);
+                double x = pmf(a, a->rows[i].light[l], l) * a->rows[i].inverse[l];
                 if (!(fabs(x - 1) < 1e-5))
-                    fail_msg("light %u of %zu, lane %d: draw's p is 1/%g, pmf %g", a->light[i][l], a->scene->lights.len,
-                             l, a->inverse[i][l], pmf(a, a->light[i][l], l));
+                    fail_msg("light %u of %zu, lane %d: draw's p is 1/%g, pmf %g", a->rows[i].light[l],
+                             a->scene->lights.len, l, a->rows[i].inverse[l], pmf(a, a->rows[i].light[l], l));
             }
     }
     double sum = 0;
@@ -253,7 +254,7 @@ static double distance(asked *a, int rounds) {
             if (!(want[l] > 0))
                 continue;
             for (int i = 0; i < DRAWS; i++)
-                x += shine(a, a->light[i][l], l) / pmf(a, a->light[i][l], l) / DRAWS / want[l];
+                x += shine(a, a->rows[i].light[l], l) / pmf(a, a->rows[i].light[l], l) / DRAWS / want[l];
             sum += x;
             square += x * x;
             n++;

@@ -129,7 +129,7 @@ void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t
         if (v->made[NOC_AOV_LIGHTS])
             v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists->build.list.count / w->lists->build.list.copies
                                                               : noc_found_count(&w->picks->found, i, l));
-        if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
+        if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0 && run->frame->plan->candidates != NOC_CANDIDATES_INFLUENCE)
             v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
     }
 }

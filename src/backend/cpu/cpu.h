@@ -68,14 +68,15 @@ typedef struct list_pass { /* lists: the list of the tile at work and the rays o
 } list_pass;
 
 typedef struct pick_pass { /* influence, light-bvh */
-    pick_block drawn;
-    tree_items items[2]; /* light-bvh */
-    noc_found found;     /* influence: by the tile at work */
+    pick_block drawn;      /* light-bvh, as the next ones */
+    tree_items items[2];
+    presample_row *set; /* influence: samples at work */
+    noc_found found;    /* by the tile at work */
     /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
     uint64_t *found_counts;
 } pick_pass;
 
-typedef struct share_pass { /* uniform, power: of the block, or of the subset at work */
+typedef struct share_pass { /* uniform, power, influence: of the block, or of the subset at work */
     ALIGNED float weighed[MOST_DRAWS][BLOCK];
     presample_pick1 drawn[MOST_DRAWS * BLOCK];
 } share_pass;
@@ -275,8 +276,9 @@ void noc_cpu_free_scratch(cpu_view *s);
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p);
 void noc_cpu_release_lights(cpu_view *s);
 void noc_cpu_forget_found(cpu_view *s); /* of the last frame, before candidates are drawn */
-/* The candidates that a frame's blocks share, where its plan has such, drawn by all threads. */
+/* The candidates that a frame's blocks share, where its plan has such, drawn by all threads; so many a pixel. */
 void noc_cpu_presample(stage_run *run);
+int noc_cpu_shared_draws(const stage_run *run);
 /* moved.c: what the frame before saw of a scene that is edited */
 /* Before a frame: room for the lights of the previous one, where reservoirs of it will be reused with these parameters,
  * and whether they can be. */
@@ -307,6 +309,15 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
 void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int count);
 
 void noc_cpu_no_receivers(gblock *g); /* none of its pixels sees anything */
+
+/* The numbers of a block's pixels in the picture. */
+static inline void noc_cpu_pixels(const stage_run *run, const tile_block *b, uint32_t pixel[BLOCK]) {
+    for (int l = 0; l < BLOCK; l++)
+        pixel[l] = (uint32_t)(b->y + l / BLOCK_SIDE) * run->ctx.frame->width + (uint32_t)(b->x + l % BLOCK_SIDE);
+}
+
+/* influence.c: reservoirs of a tile's pixels, after w->picks->found has what they find. number: of the tile */
+void noc_cpu_draw_influence(const stage_run *run, worker *w, const tile_points *points, uint32_t number);
 
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
  * into w->lists.list */

@@ -64,7 +64,9 @@ FN b1 near_add(CTX u1 list, u1 volume) {
             near->no_memory = true;
             return false;
         }
-        memset(&near->groups.data[near->groups.len++], 0, sizeof(noc_near_group));
+        noc_near_group *fresh = &near->groups.data[near->groups.len++];
+        memset(fresh->root, 0, sizeof(fresh->root)); /* what is behind the last one holds nothing */
+        memset(fresh->volume, 0, sizeof(fresh->volume));
     }
     noc_near_group *g = &near->groups.data[near->groups.len - 1];
     for (int k = 0; k < 3; k++) {

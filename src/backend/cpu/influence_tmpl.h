@@ -142,50 +142,53 @@ FN influence_asked asked_load(const asking *a, int l) {
 
 /* ---- draws ---- */
 
-/* Uniform draws of a block's lanes from l on get their densities: the light's own volume is asked. `ahead` draws at a
- * time, so that memory is waited for once. */
-static void weigh_uniform(const struct core_context *ctx, influence_asked a, const noc_near_query *q, int l, int m,
-                          int every, real in, real out, pick_block *picks) {
+/* Samples of rows from `first` on are drawn from all lights: they get their densities, by whether the lanes' points
+ * list them. `ahead` rows at a time, so that memory is waited for once. */
+static void weigh_uniform(const struct core_context *ctx, influence_asked a, const noc_near_query *q, int l, int first,
+                          int m, real in, real out, presample_row *rows) {
     enum { AHEAD = 16 };
     u32 volume[AHEAD];
-    for (int first = 0; first < m; first += AHEAD * every) {
-        int end = NOC_MIN(m, first + AHEAD * every), k = 0;
-        for (int i = first; i < end; i += every, k++) {
-            volume[k] = influence_volume(ctx, uload(picks->light[i] + l));
+    for (; first < m; first += AHEAD) {
+        int n = NOC_MIN(m - first, AHEAD);
+        for (int k = 0; k < n; k++) {
+            volume[k] = influence_volume(ctx, uload(rows[first + k].light + l));
             record_prefetch(ctx->influence->volumes->c, 8, volume[k]);
         }
-        k = 0;
-        for (int i = first; i < end; i += every, k++) {
+        for (int k = 0; k < n; k++) {
             mask held = influence_lists(ctx, volume[k], influence_load(ctx, volume[k]), a, K(q->scale), q->least > 0);
-            rstore(picks->inverse[i] + l, sel(held, in, out));
+            rstore(rows[first + k].inverse + l, sel(held, in, out));
         }
     }
 }
 
-/* Draws for a block of the tile that found that: those of influence_candidate. */
-static void pick_influence(const struct core_context *frame, const noc_found *f, int block, int x, int y, int m,
-                           pick_block *out) {
+/* A set of samples for pixels of these groups, a lane each; shared: samples that are drawn from all lights. */
+static void draw_influence(const struct core_context *frame, const noc_found *f, const uint16_t of[BLOCK],
+                           uint32_t number, int m, const presample_row *shared, presample_row *rows) {
     struct core_context c = *frame, *ctx = &c;
-    int every = (int)ctx->frame->uniform_every;
+    int every = (int)ctx->frame->uniform_every, listed = (int)influence_listed((u1)m, (u1)every);
+    u1 key = presample_key(ctx->frame->seed, number, ctx->frame->index, 0);
+    u1 share = listed ? presample_share((u1)listed * BLOCK) : 0;
     asking a;
     c.at.volumes = (noc_found *)f; /* is read */
-    asking_of(f, f->of[block], &a);
+    asking_of(f, of, &a);
+    memcpy(rows + listed, shared, (size_t)(m - listed) * sizeof(*rows));
     for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l), all = KU(ctx->influence->count);
         influence_asked q = asked_load(&a, l);
-        mask any = q.count > KU(0u);
-        real p_in = K(1.0f) / influence_pmf(any, q.count, all, m, every);
-        real p_out = K(1.0f) / influence_pmf(mload(0, l), q.count, all, m, every);
-        for (int i = 0; i < m; i++) {
-            u32 id = influence_light(ctx, q, key, all, i, every);
-            if (influence_from_all(i, every))
-                word_prefetch(ctx->influence->volume_of, id);
-            else
-                rstore(out->inverse[i] + l, sel(any, p_in, p_out));
-            ustore(out->light[i] + l, id);
+        u32 all = KU(ctx->influence->count);
+        real in = influence_inverse(q.count > KU(0u), q, all, m, every);
+        real out = influence_inverse(mload(0, l), q, all, m, every);
+        for (int i = 0; i < listed; i++) {
+            u32 j = presample_at(key, (u1)i, lane_numbers(l));
+            u32 id = influence_from_list(ctx, q, presample_bits(key, j, share), all);
+            light_prefetch((const float *)ctx->lights, id);
+            ustore(rows[i].light + l, id);
+            ustore(rows[i].place + l, presample_place(key, j));
+            rstore(rows[i].inverse + l, in);
         }
-        weigh_uniform(ctx, q, &f->group[0].query, l, m, every, p_in, p_out, out);
+        weigh_uniform(ctx, q, &f->group[0].query, l, listed, m, in, out, rows);
     }
+    for (int i = 0; i < listed; i++)
+        brief_samples(ctx, &rows[i]);
 }
 
 #endif

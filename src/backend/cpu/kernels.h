@@ -235,10 +235,12 @@ typedef struct kernels {
     /* A subset of the candidates that blocks share: m rows, of all lights alike or by power. scratch: 16 m. */
     void (*presample)(const struct core_context *ctx, uint32_t subset, int m, bool by_power, presample_pick1 *scratch,
                       presample_row *out);
-    /* m of them a lane of `lanes`, of one of so many subsets; w = m = 0 elsewhere. x, y: pixel of lane 0. scratch: m.
-     */
-    void (*presampled)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                       const presample_row *samples, uint32_t subsets, float (*scratch)[BLOCK], rblock *out);
+    /* Which of so many subsets a block of that number, or a set, has. */
+    uint32_t (*subset_of)(const struct core_context *ctx, uint32_t number, uint32_t subsets);
+    /* A reservoir of m samples, a row each, for the lanes of `lanes`; w = m = 0 elsewhere. pixels: y * width + x.
+     * scratch: m. */
+    void (*presampled)(const struct core_context *ctx, const gblock *g, uint32_t lanes, const uint32_t pixels[BLOCK],
+                       int m, const presample_row *samples, float (*scratch)[BLOCK], rblock *out);
     /* The list of a tile of `blocks` blocks into scratch->list: core/list_build.h. Then candidates from ctx->lists. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *scratch);
@@ -259,12 +261,12 @@ typedef struct kernels {
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
-    /* What the surfaces of n blocks, a tile, find among the influence volumes; then m candidates for the lanes of one
-     * of them. */
+    /* What the surfaces of n blocks, a tile, find among the influence volumes; then m rows of samples for pixels of
+     * groups that are given, a lane each: set `number` of the frame. shared: those drawn from all lights. */
     void (*influence_find)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
                            noc_found *out);
-    void (*pick_influence)(const struct core_context *ctx, const noc_found *found, int block, int x, int y, int m,
-                           pick_block *out);
+    void (*influence_draw)(const struct core_context *ctx, const noc_found *found, const uint16_t of[BLOCK],
+                           uint32_t number, int m, const presample_row *shared, presample_row *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* The pixels of the previous picture that saw this frame's surfaces; returns the lanes that have one. */

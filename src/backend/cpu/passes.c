@@ -2,6 +2,7 @@
 #include "backend/cpu/cpu.h"
 
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/influence_limits.h"
 #include "core/presample_limits.h"
 #include "core/shading.h"
 
@@ -128,9 +129,8 @@ static void end_candidates(stage_run *run, worker *w, const tile_points *points,
 
 static rblock *target_block(const stage_run *run, tile_block at) { return &run->s->b.r[run->stage->target][at.at]; }
 
-static float start_of_tail(const stage_run *run, tile t) {
-    int number = t.y0 / TILE_BLOCKS * run->s->b.tiles_x + t.x0 / TILE_BLOCKS;
-    return tail_start(run->ctx.frame->seed, (uint32_t)number, run->ctx.frame->index);
+static uint32_t tile_number(const stage_run *run, tile t) {
+    return (uint32_t)(t.y0 / TILE_BLOCKS * run->s->b.tiles_x + t.x0 / TILE_BLOCKS);
 }
 
 static void gather_points(const stage_run *run, tile t, tile_points *out) {
@@ -150,35 +150,51 @@ static void find_lights(stage_run *run, worker *w, tile t) {
 static void build_list(stage_run *run, worker *w, tile t) {
     tile_points points;
     gather_points(run, t, &points);
-    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, start_of_tail(run, t), &w->lists->build);
+    run->k->list_build(&run->ctx, points.g, points.lanes, points.count,
+                       tail_start(run->ctx.frame->seed, tile_number(run, t), run->ctx.frame->index), &w->lists->build);
+}
+
+int noc_cpu_shared_draws(const stage_run *run) {
+    u1 m = (u1)run->frame->plan->candidate_count;
+    if (run->frame->plan->candidates == NOC_CANDIDATES_INFLUENCE)
+        m -= influence_listed(m, run->ctx.frame->uniform_every);
+    return (int)m;
 }
 
 static void presample(void *arg, size_t subset, int index) {
     stage_run *run = arg;
     worker *w = &run->s->workers[index];
-    int m = run->frame->plan->candidate_count;
-    bool by_power = run->frame->plan->candidates == NOC_CANDIDATES_POWER;
+    noc_candidates from = run->frame->plan->candidates;
+    int m = noc_cpu_shared_draws(run);
     double start = noc_wall_seconds();
-    run->k->presample(&run->ctx, (uint32_t)subset, m, by_power, w->shares->drawn, run->s->samples + subset * (size_t)m);
-    w->seconds[by_power ? NOC_PASS_CANDIDATES_POWER : NOC_PASS_CANDIDATES_UNIFORM] += noc_wall_seconds() - start;
+    run->k->presample(&run->ctx, (uint32_t)subset, m, from == NOC_CANDIDATES_POWER, w->shares->drawn,
+                      run->s->samples + subset * (size_t)m);
+    w->seconds[from == NOC_CANDIDATES_POWER       ? NOC_PASS_CANDIDATES_POWER
+               : from == NOC_CANDIDATES_INFLUENCE ? NOC_PASS_CANDIDATES_INFLUENCE
+                                                  : NOC_PASS_CANDIDATES_UNIFORM] += noc_wall_seconds() - start;
 }
 
 void noc_cpu_presample(stage_run *run) {
     const noc_plan *plan = run->frame->plan;
     const frame_buffers *b = &run->s->b;
-    bool shared = plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER;
+    bool shared = plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER ||
+                  plan->candidates == NOC_CANDIDATES_INFLUENCE;
     if (!plan->draws || !shared || !run->ctx.light_count)
         return;
-    run->s->subsets = presample_subsets((uint32_t)plan->candidate_count, (uint32_t)(b->blocks_x * b->blocks_y));
+    run->s->subsets = presample_subsets((uint32_t)noc_cpu_shared_draws(run), (uint32_t)(b->blocks_x * b->blocks_y));
     noc_pool_run(run->s->pool, run->s->subsets, presample, run);
 }
 
 static void candidates_shared(stage_run *run, worker *w, tile t) {
+    int m = run->frame->plan->candidate_count;
     tile_points p;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
-        run->k->presampled(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, run->frame->plan->candidate_count,
-                           run->s->samples, run->s->subsets, w->shares->weighed, target_block(run, p.block[i]));
+        uint32_t subset = run->k->subset_of(&run->ctx, (uint32_t)p.block[i].at, run->s->subsets);
+        uint32_t pixel[BLOCK];
+        noc_cpu_pixels(run, &p.block[i], pixel);
+        run->k->presampled(&run->ctx, p.g[i], p.lanes[i], pixel, m, run->s->samples + (size_t)m * subset,
+                           w->shares->weighed, target_block(run, p.block[i]));
         end_candidates(run, w, &p, i);
     }
 }
@@ -194,33 +210,27 @@ static void candidates_list(stage_run *run, worker *w, tile t) {
     }
 }
 
-/* Candidates that a picker draws for a block, then weighs. */
-typedef void draw_fn(const stage_run *run, worker *w, const tile_points *p, int i, int m);
-
-static void draw_influence(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_influence(&run->ctx, &w->picks->found, i, p->block[i].x, p->block[i].y, m, &w->picks->drawn);
-}
-
-static void draw_light_bvh(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_tree(&run->ctx, p->g[i], p->lanes[i], p->block[i].x, p->block[i].y, m, w->picks->items,
-                      &w->picks->drawn);
-}
-
-static void draw_candidates(stage_run *run, worker *w, tile t, draw_fn *draw) {
+static void candidates_light_bvh(stage_run *run, worker *w, tile t) {
     int m = run->frame->plan->candidate_count;
     tile_points p;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
         if (p.lanes[i])
-            draw(run, w, &p, i, m);
+            run->k->pick_tree(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, w->picks->items,
+                              &w->picks->drawn);
         run->k->given(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, &w->picks->drawn,
                       target_block(run, p.block[i]));
         end_candidates(run, w, &p, i);
     }
 }
 
-static void candidates_influence(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_influence); }
-static void candidates_light_bvh(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_light_bvh); }
+static void candidates_influence(stage_run *run, worker *w, tile t) {
+    tile_points p;
+    gather_points(run, t, &p);
+    noc_cpu_draw_influence(run, w, &p, tile_number(run, t));
+    for (int i = 0; i < p.count; i++)
+        end_candidates(run, w, &p, i);
+}
 
 static void share_rays(stage_run *run, worker *w, tile t) {
     tile_points points;

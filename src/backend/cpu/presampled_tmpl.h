@@ -65,9 +65,10 @@ static void brief_samples(const struct core_context *ctx, presample_row *p) {
 
 static void presample_lights(const struct core_context *ctx, uint32_t subset, int m, bool by_power,
                              presample_pick1 *scratch, presample_row *out) {
-    u1 key = presample_key(ctx->frame->seed, subset, ctx->frame->index, 0), n = (u1)m * BLOCK;
+    u1 key = presample_key(ctx->frame->seed, subset, ctx->frame->index, 0), n = (u1)m * BLOCK,
+       share = presample_share(n);
     for (uint32_t first = 0; first < n; first += LANES) {
-        u32 i = KU(first) + lane_numbers(0), bits = presample_bits(key, i, n), place = presample_place(key, i);
+        u32 i = KU(first) + lane_numbers(0), bits = presample_bits(key, i, share), place = presample_place(key, i);
         pick p = { scale_u32(bits, KU(ctx->light_count)), K((float)ctx->light_count) };
         if (by_power)
             p = ctx->alias->count ? alias_draw(ctx, KU(ctx->alias->count), bits, presample_choice(key, i))
@@ -86,22 +87,27 @@ static void presample_lights(const struct core_context *ctx, uint32_t subset, in
         brief_samples(ctx, &out[i]);
 }
 
-static void presampled(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,
-                       const presample_row *samples, uint32_t subsets, float (*weighed)[BLOCK], rblock *out) {
+/* Which of so many subsets a block, or a set of influence, of that number has. */
+static uint32_t subset_of(const struct core_context *ctx, uint32_t number, uint32_t subsets) {
+    return (uint32_t)((uint64_t)presample_key(ctx->frame->seed, number, ctx->frame->index, 1) * subsets >> 32);
+}
+
+static void presampled(const struct core_context *frame, const gblock *g, uint32_t lanes, const uint32_t pixels[BLOCK],
+                       int m, const presample_row *samples, float (*weighed)[BLOCK], rblock *out) {
     struct core_context c = *frame, *ctx = &c;
-    uint32_t block = (uint32_t)(y / BLOCK_SIDE) * ctx->frame->blocks_x + (uint32_t)(x / BLOCK_SIDE);
-    u1 key = presample_key(ctx->frame->seed, block, ctx->frame->index, 1);
-    c.at.samples = samples + (size_t)m * ((uint64_t)key * subsets >> 32);
+    c.at.samples = samples;
     c.at.weighed = weighed;
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         reservoir r = reservoir_empty();
         c.at.lane = l;
-        if (ANY(on))
+        if (ANY(on)) {
+            u32 key = rng_key(KU(ctx->frame->seed), uload(pixels + l), KU(ctx->frame->index));
             r = reservoir_sel(on,
                               ris_presampled(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye),
-                                             rng(key_of(ctx, x, y, l), KU(DIM_CANDIDATE)), m),
+                                             rng(key, KU(DIM_CANDIDATE)), m),
                               r);
+        }
         reservoir_store(out, l, r);
     }
 }

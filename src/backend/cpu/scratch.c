@@ -16,12 +16,10 @@ static bool has(const noc_plan *plan, noc_pass pass) {
 
 static bool make_lists(worker *w) { return MAKE(w->lists, 1); }
 
-static bool make_draws(worker *w) {
-    return MAKE(w->picks, 1) && MAKE(w->picks->drawn.light, MAX_DRAWS) && MAKE(w->picks->drawn.inverse, MAX_DRAWS);
-}
+static bool make_set(worker *w) { return MAKE(w->picks, 1) && MAKE(w->picks->set, MOST_DRAWS); }
 
 static bool make_items(worker *w) {
-    bool ok = true;
+    bool ok = MAKE(w->picks, 1) && MAKE(w->picks->drawn.light, MAX_DRAWS) && MAKE(w->picks->drawn.inverse, MAX_DRAWS);
     for (int i = 0; i < 2 && ok; i++) {
         tree_items *t = &w->picks->items[i];
         ok = MAKE(t->pair, TREE_ITEMS) && MAKE(t->what, TREE_ITEMS) && MAKE(t->pmf, TREE_ITEMS);
@@ -53,8 +51,8 @@ noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan) {
     uint32_t bins = (uint32_t)NOC_MIN(lights, (size_t)FOUND_MOST) + 1;
     bool lists = plan->draws && plan->candidates == NOC_CANDIDATES_LISTS;
     bool found = has(plan, NOC_PASS_FIND_LIGHTS), items = has(plan, NOC_PASS_CANDIDATES_LIGHT_BVH);
-    bool draws = found || items, all = has(plan, NOC_PASS_SHADE_ALL);
-    bool shared = has(plan, NOC_PASS_CANDIDATES_UNIFORM) || has(plan, NOC_PASS_CANDIDATES_POWER);
+    bool all = has(plan, NOC_PASS_SHADE_ALL);
+    bool shared = has(plan, NOC_PASS_CANDIDATES_UNIFORM) || has(plan, NOC_PASS_CANDIDATES_POWER) || found;
     bool reuse = has(plan, NOC_PASS_TEMPORAL) || has(plan, NOC_PASS_SPATIAL), ok;
     bool more_bins = found && bins > s->found_bins, more_chunks = all && chunks > s->chunks;
     s->found_bins = more_bins ? bins : s->found_bins;
@@ -62,7 +60,7 @@ noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan) {
     ok = !shared || MAKE(s->samples, PRESAMPLES / BLOCK);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        ok = ok && (!lists || make_lists(w)) && (!draws || make_draws(w)) && (!items || make_items(w));
+        ok = ok && (!lists || make_lists(w)) && (!found || make_set(w)) && (!items || make_items(w));
         ok = ok && (!shared || MAKE(w->shares, 1));
         ok = ok && (!reuse || MAKE(w->combining, TILE_BLOCKS * TILE_BLOCKS));
         /* what grows goes first, for every thread: none is left with less than the others */
@@ -80,6 +78,7 @@ static void free_picks(pick_pass *p) {
         return;
     free(p->drawn.light);
     free(p->drawn.inverse);
+    free(p->set);
     noc_found_free(&p->found);
     free(p->found_counts);
     for (int i = 0; i < 2; i++) {
