@@ -148,8 +148,8 @@ int main(int argc, char **argv) {
     if (!ok)
         return 1;
     printf(
-        "| scene | MB | triangles | load CPU s, helper | MB/s | load, of that reading, first picture, s by the clock | structure, lights CPU s | peak "
-        "MB, helper |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+        "| scene | MB | triangles | load CPU s, helper | MB/s | load, of that reading, first picture, s by the clock | "
+        "structure, lights CPU s | peak MB, helper |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
     for (int i = 0; i < count; i++) {
         const result *r = &least[i];
         const char *slash = strrchr(specs[i], '/');

@@ -211,6 +211,8 @@ static void test_errors(void **state) {
 }
 
 /* What a piece cannot know of the others. */
+#define LAMP_BODY SURFACES(POLYGON("i", "678000 5404000 5 678001 5404000 5 678001 5404001 5"))
+
 static void test_of_one_another(void **state) {
     (void)state;
     static const char *const more[] = {
@@ -233,10 +235,7 @@ static void test_of_one_another(void **state) {
         "<b:lod2MultiSurface>" SURFACES(POLYGON("q", "1e300 5 0 1e300 7 0 1e299 9 0")) "</b:lod2MultiSurface>",
         "<b:interiorRoom><b:Room/></b:interiorRoom>",
         "<b:outerBuildingInstallation><b:BuildingInstallation g:id='i'><b:function>street lamp</b:function>"
-        "<b:lod2Geometry>" SURFACES(POLYGON(
-            "i",
-            "678000 5404000 5 678001 5404000 5 678001 5404001 5")) "</b:lod2Geometry>"
-                                                                   "</b:BuildingInstallation></b:outerBuildingInstallation>",
+        "<b:lod2Geometry>" LAMP_BODY "</b:lod2Geometry></b:BuildingInstallation></b:outerBuildingInstallation>",
     };
     for (size_t i = 0; i < NOC_COUNT(more); i++) {
         begin();
