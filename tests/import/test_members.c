@@ -210,9 +210,9 @@ static void test_errors(void **state) {
     assert_int_equal(load_by_all().status, NOC_ERR_FORMAT);
 }
 
-/* What a piece cannot know of the others. */
 #define LAMP_BODY SURFACES(POLYGON("i", "678000 5404000 5 678001 5404000 5 678001 5404001 5"))
 
+/* What a piece cannot know of the others. */
 static void test_of_one_another(void **state) {
     (void)state;
     static const char *const more[] = {
