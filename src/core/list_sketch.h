@@ -207,9 +207,11 @@ FN real sketch_target(CTX surf s, sketch_surf q, list_sketch k, real d2, real ar
         facing = sel(spot, min_(facing, K(1.0f)), facing);
         facing = sel(spot, facing * facing, facing);
         mask profiled = and_(beam, not_(spot));
-        u32 number = selu(profiled, shr(k.shape, SKETCH_NUMBER), KU(1u));
-        v3 away = sub3(fill3(K(0.0f)), wi);
-        facing = sel(profiled, profile_about(PASS number, k.normal, k.beside, away, k.level), facing);
+        if (ANY(profiled)) { /* there may be none */
+            u32 number = selu(profiled, shr(k.shape, SKETCH_NUMBER), KU(1u));
+            v3 away = sub3(fill3(K(0.0f)), wi);
+            facing = sel(profiled, profile_about(PASS number, k.normal, k.beside, away, k.level), facing);
+        }
     }
     real n_wi = dot3(s.n, wi);
     EXACT real rim = K(0.5f) * (n_wi + ((k.radius + around) * inv + spread));

@@ -16,9 +16,9 @@ SPEC
 spec preset.json '{ "name": "*", "preset": "*" }, { "name": "own", "shadow-rays": 2, "preset": "interactive" }'
 spec spelled.json '{ "name": "still", "method": "ris", "candidates": "lists", "list": 64, "tail": 128,
     "shadow-rays": 8 },
-    { "name": "interactive", "method": "restir", "spatial": false, "history": 8, "candidates": "lists", "list": 32,
+    { "name": "interactive", "method": "restir", "spatial": false, "history": 4, "candidates": "lists", "list": 32,
     "tail": 32, "shadow-rays": 4 },
-    { "name": "own", "method": "restir", "spatial": false, "history": 8, "candidates": "lists", "list": 32,
+    { "name": "own", "method": "restir", "spatial": false, "history": 4, "candidates": "lists", "list": 32,
     "tail": 32, "shadow-rays": 2 }'
 run experiment preset.json -o p --cache cache
 test $status = 0 && grep -q ': 6 rows, 6 of them made now' out
@@ -31,7 +31,7 @@ spec shared.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": 
 run experiment shared.json -o q --cache cache
 spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "method": "ris",
     "spatial": true, "history": 20, "list": 64, "tail": 128, "shadow-rays": 8 }' \
-    '"options": { "method": "restir", "spatial": false, "history": 8, "list": 32, "tail": 48, "shadow-rays": 4 },'
+    '"options": { "method": "restir", "spatial": false, "history": 4, "list": 32, "tail": 48, "shadow-rays": 4 },'
 run experiment spelled.json -o q --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out
 result $? "one for all configurations is overruled by their own"

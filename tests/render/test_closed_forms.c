@@ -7,6 +7,13 @@ static noc_scene *scene_done(noc_scene *s) {
     return s;
 }
 
+/* Of one light every sample is the same, and so is every way to combine them; of one neighbour none is drawn. */
+static noc_render_params exact(int width, int height, noc_method method) {
+    noc_render_params p = measure(width, height, method);
+    p.neighbours = 1;
+    return p;
+}
+
 /* E = I cos^3 / h^2 under a point luminaire; L = E albedo / pi. Exact in one frame: one light, no occlusion. */
 static void point_over_plane(void **state) {
     (void)state;
@@ -19,7 +26,7 @@ static void point_over_plane(void **state) {
         scene_done(s);
         noc_camera c = look(far, -far - 12, 9, far, -far, 0, 50);
         for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
-            noc_render_params p = measure(48, 32, (noc_method)m);
+            noc_render_params p = exact(48, 32, (noc_method)m);
             noc_image *image = render(s, &c, &p, 2);
             for (int y = 12; y < 32; y += 3)
                 for (int x = 0; x < 48; x += 5) {
@@ -58,7 +65,7 @@ static void spot_over_plane(void **state) {
         noc_camera c = look(0, 0, 100, 0, 0, 0, 2 * 180 / M_PI * atan(side / 2 / 100));
         c.up[1] = 1, c.up[2] = 0;
         for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
-            noc_render_params p = measure(64, 64, (noc_method)m);
+            noc_render_params p = exact(64, 64, (noc_method)m);
             noc_image *image = render(s, &c, &p, 1);
             double flux = 0;
             int inside = 0, between = 0, outside = 0;
@@ -107,7 +114,7 @@ static void rectangle_over_plane(void **state) {
     scene_done(s);
     noc_camera c = look(0, -9, 2.5, 0, 0, 0, 60);
     for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
-        noc_render_params p = measure(32, 16, (noc_method)m);
+        noc_render_params p = exact(32, 16, (noc_method)m);
         p.temporal = false; /* frames independent: their spread says how far off the mean may be */
         int frames = 400;
         noc_view *r = own_view(s, 0, NULL);
@@ -161,7 +168,7 @@ static void profile_over_plane(void **state) {
     scene_done(s);
     noc_camera eye = look(0, -6, 5, 0, 0, 0, 60);
     for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
-        noc_render_params p = measure(32, 24, (noc_method)m);
+        noc_render_params p = exact(32, 24, (noc_method)m);
         noc_image *image = render(s, &eye, &p, 1);
         for (int y = 10; y < 24; y++)
             for (int x = 0; x < 32; x++) {
@@ -195,7 +202,7 @@ static void hundred_lux(void **state) {
     scene_done(s);
     noc_camera c = look(0, -1, 4, 0, 0, 0, 3);
     for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
-        noc_render_params p = measure(8, 8, (noc_method)m);
+        noc_render_params p = exact(8, 8, (noc_method)m);
         noc_image *image = render(s, &c, &p, 64);
         double mean = 0;
         for (int k = 0; k < 64; k++)

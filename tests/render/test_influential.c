@@ -106,7 +106,7 @@ static void by_samples(void **state) {
         double near;
     } cases[] = { { NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, 64, 0.05 },
                   { NOC_METHOD_RIS, NOC_CANDIDATES_POWER, 400, 0.12 },
-                  { NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, 400, 0.12 } };
+                  { NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, 1000, 0.12 } };
     noc_camera c = above();
     noc_scene *s = row(LAMPS);
     for (size_t k = 0; k < NOC_COUNT(cases); k++) {

@@ -31,6 +31,7 @@ static void hold(noc_scene *s, law lux, const void *what, double albedo, double 
     noc_camera c = look(0, -12, 9, 0, 0, 0, 50);
     for (size_t k = 0; k < NOC_COUNT(ways); k++) {
         noc_render_params p = with(ways[k].method, ways[k].candidates, BOTH);
+        p.neighbours = 1; /* of more some are drawn, and it would be so in the mean alone */
         noc_view *r = rendered(s, &c, &p, 2, 2);
         noc_channel *e = view(r, NOC_AOV_ILLUMINANCE), *l = view(r, NOC_AOV_LUMINANCE);
         assert_string_equal(e->unit, "lx");

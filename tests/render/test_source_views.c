@@ -85,8 +85,8 @@ static void what_brings_the_most_light(void **state) {
         double clear;
     } cases[] = {
         { NOC_METHOD_REFERENCE, NOC_CANDIDATES_LISTS, 1, 1.0001 }, { NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, 64, 1.7 },
-        { NOC_METHOD_RIS, NOC_CANDIDATES_POWER, 200, 2.5 },        { NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, 500, 2 },
-        { NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, 500, 2 },
+        { NOC_METHOD_RIS, NOC_CANDIDATES_POWER, 200, 2.5 },        { NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, 1200, 2 },
+        { NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, 1200, 2 },
     };
     noc_camera c = above();
     for (size_t k = 0; k < NOC_COUNT(cases); k++)
