@@ -85,7 +85,16 @@ FN __m256i two_rows(const uint32_t *first, const uint32_t *second) {
     return _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_load_si128((const __m128i *)first)),
                                    _mm_load_si128((const __m128i *)second), 1);
 }
-/* x: s.x, which an instruction wants to be a constant. */
+/* Of each half the four words from word x of a on, and of b behind them. An instruction wants x to be a constant. */
+FN __m256i words_from(__m256i a, __m256i b, int x) {
+    switch (x) {
+    case 0: return a;
+    case 1: return _mm256_alignr_epi8(b, a, 4);
+    case 2: return _mm256_alignr_epi8(b, a, 8);
+    default: return _mm256_alignr_epi8(b, a, 12);
+    }
+}
+/* x: s.x, known where this is inlined. */
 FN void rows_from(const uint32_t *w, size_t stride, shifted s, const int x, int count, uint32_t *out) {
     const uint32_t *left[BLOCK_SIDE], *right[BLOCK_SIDE];
     for (int row = 0; row < BLOCK_SIDE; row++) {
@@ -97,7 +106,7 @@ FN void rows_from(const uint32_t *w, size_t stride, shifted s, const int x, int 
     for (int k = 0; k < count * BLOCK; k += BLOCK)
         for (int row = 0; row < BLOCK_SIDE; row += 2) {
             __m256i a = two_rows(left[row] + k, left[row + 1] + k), b = two_rows(right[row] + k, right[row + 1] + k);
-            _mm256_store_si256((__m256i *)(out + k + row * BLOCK_SIDE), _mm256_alignr_epi8(b, a, 4 * x));
+            _mm256_store_si256((__m256i *)(out + k + row * BLOCK_SIDE), words_from(a, b, x));
         }
 }
 FN void shifted_words(const void *words, size_t stride, shifted s, int count, void *out) {
