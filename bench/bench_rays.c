@@ -262,7 +262,7 @@ int main(int argc, char **argv) {
     static const noc_candidates sources[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS };
     for (int i = 0; set.blocks && i < 4; i++) {
         p.candidates = sources[i / 2];
-        noc_plan_make(&p, false, -1, &plan);
+        noc_plan_make(&p, false, -1, false, &plan);
         if (noc_backend_embree.stage(state, &frame, &plan.stages[0], NULL, 0, 1) != NOC_OK)
             return 1;
         collect(s, &ctx, i % 2 ? 3 : 0, &set);

@@ -26,7 +26,7 @@ typedef struct noc_frame {
     bool seen_before; /* constants.previous is the camera of the complete frame before, in pixels of this size */
     bool history;     /* the frame before is of the same size and parameters: its reservoirs can be reused */
     int history_set;  /* set that holds the previous frame's reservoirs */
-    int gbuffer;      /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+    int gbuffer, previous_gbuffer; /* 0 or 1: this frame's, and the previous frame's; the same where it is kept */
 } noc_frame;
 
 /* What estimates apart from frames are made with (render/influence.c), while the scene is held for a frame. */
@@ -138,12 +138,14 @@ typedef struct noc_history {
     bool started;  /* params and camera are those of an earlier frame */
     bool viewed;   /* view is the camera of a complete frame */
     bool reusable; /* that frame was completed, and its reservoirs are there */
+    bool surfaces; /* the G-buffer is there that view saw, of the scene after `seen` commits */
     noc_render_params params;
     noc_camera camera;
     frame_camera view;
     uint32_t index; /* of the next frame */
     uint64_t accumulated;
     uint64_t commits; /* of the scene, that the frame knew */
+    uint64_t seen;
     int set, gbuffer;
 } noc_history;
 

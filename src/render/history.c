@@ -33,7 +33,13 @@ void noc_history_forget(noc_history *h, unsigned resets) {
     if (resets & NOC_RESETS_MEAN)
         h->accumulated = 0;
     if (resets & NOC_RESETS_RESERVOIRS)
-        h->reusable = false;
+        h->reusable = h->surfaces = false;
+}
+
+/* Does this frame see the surfaces of the last one, to the bit? Views of what its rays hit are gathered from those. */
+static bool same_surfaces(const noc_history *h, const frame_constants *c, uint64_t commits, uint32_t aovs) {
+    const uint32_t hits = 1u << NOC_AOV_OBJECT | 1u << NOC_AOV_CLASS;
+    return h->surfaces && h->seen == commits && !(aovs & hits) && !memcmp(&h->view, &c->camera, sizeof(h->view));
 }
 
 void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, uint64_t commits,
@@ -48,13 +54,14 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
                           .seen_before = h->viewed,
                           .history = h->started && h->reusable,
                           .history_set = h->set,
-                          .gbuffer = 1 - h->gbuffer };
+                          .previous_gbuffer = h->gbuffer };
     frame_constants *c = &frame->constants;
     noc_make_frame_constants(params, h->index, frame->history, c);
     noc_make_frame_camera(camera, params, h->index, &c->camera);
     c->previous = h->viewed ? h->view : c->camera;
     c->previous.width = c->camera.width;
     c->previous.height = c->camera.height;
+    frame->gbuffer = same_surfaces(h, c, commits, params->aovs) ? h->gbuffer : 1 - h->gbuffer;
     h->started = true;
     h->reusable = false; /* until the frame is completed */
     h->params = *params;
@@ -64,7 +71,8 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
 
 void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
     h->view = frame->constants.camera;
-    h->viewed = true;
+    h->viewed = h->surfaces = true;
+    h->seen = h->commits;
     h->gbuffer = frame->gbuffer;
     h->set = next_set;
     h->reusable = next_set >= 0;
@@ -77,4 +85,5 @@ void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
 void noc_history_drop(noc_history *h, const noc_frame *frame, bool first_stage) {
     h->index++;
     h->reusable = frame->history && first_stage;
+    h->surfaces = false;
 }

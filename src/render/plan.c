@@ -157,7 +157,7 @@ static void add_shading(maker *m, const noc_render_params *p, bool sky, bool reu
  * 32 alone, at the same cost), else the temporal output: biased spatial output fed back compounds its bias, and that of
  * the balance rule, which picks a sample before it weighs it, compounds its outliers (frame 32 alone: .93 against .66).
  */
-void noc_plan_make(const noc_render_params *p, bool map, int history_set, noc_plan *plan) {
+void noc_plan_make(const noc_render_params *p, bool map, int history_set, bool surfaces, noc_plan *plan) {
     bool restir = p->method == NOC_METHOD_RESTIR, one = p->method == NOC_METHOD_IS;
     int rounds = restir && p->spatial && p->neighbours > 0 ? p->passes : 0;
     bool temporal = restir && p->temporal, feed = temporal && rounds && feeds_spatial(p);
@@ -177,7 +177,8 @@ void noc_plan_make(const noc_render_params *p, bool map, int history_set, noc_pl
     plan->mixes = plan->shares_rays && restir && !rounds;
     bool resolve = noc_uses_bias_rays(p);
     maker m = { .plan = plan, .next = { .source = history, .target = fresh, .resolve_visibility = resolve } };
-    add(&m, NOC_PASS_PRIMARY);
+    if (!surfaces)
+        add(&m, NOC_PASS_PRIMARY);
     if (plan->draws)
         add_candidates(&m, p);
     if (temporal)

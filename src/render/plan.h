@@ -88,8 +88,8 @@ typedef struct noc_plan {
 } noc_plan;
 
 /* What to run for these parameters. map: the scene has one around it. history_set: set with the previous frame's
- * reservoirs, -1: none. */
-void noc_plan_make(const noc_render_params *params, bool map, int history_set, noc_plan *plan);
+ * reservoirs, -1: none. surfaces: the frame's G-buffer is there already. */
+void noc_plan_make(const noc_render_params *params, bool map, int history_set, bool surfaces, noc_plan *plan);
 
 /* Is visibility a part of the target functions that reuse weighs with? Passes are told by FRAME_BIAS_RAYS. */
 bool noc_uses_bias_rays(const noc_render_params *params);

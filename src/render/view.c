@@ -127,13 +127,13 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
     bool map = v->scene->environment != NULL;
     v->last.there = false;
-    noc_plan_make(p, map, -1, &plan);
+    noc_plan_make(p, map, -1, false, &plan);
     noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
         return status;
     noc_history_begin(&v->history, camera, p, v->scene->versions.commits, &frame);
     noc_make_frame_environment(v->scene, p, &frame.constants);
-    noc_plan_make(p, map, frame.history_set, &plan);
+    noc_plan_make(p, map, frame.history_set, frame.gbuffer == frame.previous_gbuffer, &plan);
     frame.plan = &plan;
     int stage = 0;
     for (; stage < plan.count && status == NOC_OK; stage++)

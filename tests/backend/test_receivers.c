@@ -38,7 +38,7 @@ static void make(cpu_view *v, const noc_camera *c, noc_method method, uint32_t e
     noc_render_params p = measure(SIDE, SIDE, method);
     noc_plan plan;
     noc_frame f = { .params = &p, .plan = &plan, .receivers = points, .epoch = epoch };
-    noc_plan_make(&p, false, -1, &plan);
+    noc_plan_make(&p, false, -1, false, &plan);
     noc_make_frame_constants(&p, 0, false, &f.constants);
     noc_make_frame_camera(c, &p, 0, &f.constants.camera);
     f.constants.previous = f.constants.camera;

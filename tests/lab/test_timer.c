@@ -19,6 +19,7 @@ static noc_lab_case of(noc_device *device, const noc_scene *scene, noc_method me
         .device = device, .scene = scene, .render = noc_lab_render_params(SIDE, SIDE), .floor = floor
     };
     one.render.method = method;
+    one.render.jitter = true; /* else the camera's rays are traced once */
     assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1, &one.camera), NOC_OK);
     return one;
 }

@@ -4,12 +4,13 @@
 #include "render/plan.h"
 
 /* Calls back with every combination of what decides a plan. */
-static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history, bool map)) {
+static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history, bool map,
+                                   bool surfaces)) {
     int count = 0;
     for (int method = 0; method < NOC_METHOD_COUNT; method++)
         for (int from = 0; from < NOC_CANDIDATES_COUNT; from++)
             for (int bias = 0; bias <= NOC_BIAS_PAIRWISE; bias++)
-                for (int bits = 0; bits < 64; bits++)
+                for (int bits = 0; bits < 128; bits++)
                     for (int passes = 1; passes <= 4; passes++)
                         for (int history = -1; history <= 2; history++) {
                             noc_render_params p = noc_render_default_params();
@@ -23,10 +24,10 @@ static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *p
                             p.bias_rays = bits & 16;
                             p.sky = bits & 32 ? 0.02 : 0;
                             p.passes = passes;
-                            bool map = (bits ^ passes) & 4;
+                            bool map = (bits ^ passes) & 4, surfaces = bits & 64;
                             noc_plan plan;
-                            noc_plan_make(&p, map, history, &plan);
-                            check(&p, &plan, history, map);
+                            noc_plan_make(&p, map, history, surfaces, &plan);
+                            check(&p, &plan, history, map, surfaces);
                             count++;
                         }
     return count;
@@ -59,12 +60,13 @@ static uint32_t check_sum(const noc_pass_row *row, uint32_t summed) {
     return colour;
 }
 
-static void check_stages(const noc_render_params *p, const noc_plan *plan, int history, bool map) {
+static void check_stages(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     uint32_t sets = 0, summed = 0, written = 1u << NOC_BUFFER_PREVIOUS | 1u << NOC_BUFFER_CACHE;
     (void)p;
     (void)map;
     assert_in_range(plan->count, 1, NOC_MAX_STAGES);
-    assert_int_equal(plan->stages[0].passes[0], NOC_PASS_PRIMARY);
+    assert_int_equal(plan->stages[0].passes[0] == NOC_PASS_PRIMARY, !surfaces);
+    written |= (uint32_t)surfaces << NOC_BUFFER_SURFACES;
     if (history >= 0 || plan->next_history >= 0) /* in the first frame nobody looks */
         written |= 1u << (NOC_BUFFER_COUNT + plan->stages[0].source);
     for (int i = 0; i < plan->count; i++) {
@@ -100,12 +102,13 @@ static void check_stages(const noc_render_params *p, const noc_plan *plan, int h
 
 static void stages_may_run_tile_by_tile(void **state) {
     (void)state;
-    assert_int_equal(each_plan(check_stages), NOC_METHOD_COUNT * NOC_CANDIDATES_COUNT * 3 * 64 * 4 * 4);
+    assert_int_equal(each_plan(check_stages), NOC_METHOD_COUNT * NOC_CANDIDATES_COUNT * 3 * 128 * 4 * 4);
 }
 
-static void check_shading(const noc_render_params *p, const noc_plan *plan, int history, bool map) {
+static void check_shading(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     int shades = 0, skies = 0;
     (void)history;
+    (void)surfaces;
     for (int i = 0; i < plan->count; i++)
         for (int k = 0; k < plan->stages[i].count; k++) {
             noc_pass pass = plan->stages[i].passes[k];

@@ -193,6 +193,70 @@ static void sizes_keep_what_was_learned(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Are the camera's rays traced in a frame of these parameters? Pictures of `all`, which traces them each time for a
+ * view of what they hit, are the same to the bit. */
+static bool traces(noc_view *v, noc_view *all, const noc_camera *c, noc_render_params p) {
+    noc_frame_stats stats;
+    assert_int_equal(noc_view_render(v, c, &p, NULL), NOC_OK);
+    noc_view_get_stats(v, &stats);
+    assert_true(!stats.rays_primary || stats.rays_primary == (uint64_t)p.width * (uint64_t)p.height);
+    p.aovs |= 1u << NOC_AOV_OBJECT;
+    assert_int_equal(noc_view_render(all, c, &p, NULL), NOC_OK);
+    assert_true(equal(v, all));
+    return stats.rays_primary > 0;
+}
+
+static bool refuse(void *user, const char *what, double done) {
+    (void)what;
+    (void)done;
+    return --*(int *)user > 0;
+}
+
+/* The G-buffer is kept while nothing moves: neither the camera and what it sees, nor places in pixels. */
+static void surfaces_are_kept_while_nothing_moves(void **state) {
+    (void)state;
+    for (int method = NOC_METHOD_RIS; method <= NOC_METHOD_RESTIR; method++) {
+        noc_scene *s = yard();
+        noc_camera c = above(), aside = look(3, -13, 5, 0, 0, 0.5, 60);
+        noc_render_params p = basic(method), q = p;
+        p.aovs = 0;
+        p.spatial = true;
+        noc_view *v = own_view(s, 1, NULL), *all = own_view(s, 1, NULL); /* one thread: the same tiles are dropped */
+        assert_true(traces(v, all, &c, p) && traces(v, all, &c, p));     /* with jitter */
+        p.jitter = false;
+        assert_true(traces(v, all, &c, p));
+        for (int i = 0; i < 3; i++)
+            assert_false(traces(v, all, &c, p));
+        p.aovs = 1u << NOC_AOV_MOTION | 1u << NOC_AOV_NORMAL;
+        assert_false(traces(v, all, &c, p));
+        p.aovs = 1u << NOC_AOV_CLASS;
+        assert_true(traces(v, all, &c, p));
+        p.aovs = 0;
+        assert_true(traces(v, all, &aside, p) && traces(v, all, &c, p));
+        assert_false(traces(v, all, &c, p));
+        QUAD(s, 0, -1, -2, 0, 2, 0, 0, 0, 0, 2);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        assert_true(traces(v, all, &c, p));
+        assert_false(traces(v, all, &c, p));
+        q = p;
+        q.width = q.height = SIDE + 9;
+        assert_true(traces(v, all, &c, q) && traces(v, all, &c, p));
+        assert_false(traces(v, all, &c, p));
+        int left = 2; /* a frame that is dropped, of another place */
+        noc_progress stop = { refuse, &left };
+        assert_int_equal(noc_view_render(v, &aside, &p, &stop), NOC_ERR_CANCELLED);
+        left = 2;
+        assert_int_equal(noc_view_render(all, &aside, &p, &stop), NOC_ERR_CANCELLED);
+        assert_true(traces(v, all, &c, p));
+        noc_view_reset(v);
+        noc_view_reset(all);
+        assert_true(traces(v, all, &c, p));
+        close_view(v);
+        close_view(all);
+        noc_scene_destroy(s);
+    }
+}
+
 /* AOVs, and options that are idle, are forgotten nowhere. */
 static void idle_options_and_aovs_reset_nothing(void **state) {
     (void)state;
@@ -290,6 +354,7 @@ int main(void) {
         cmocka_unit_test(rows_are_true),
         cmocka_unit_test(a_mean_that_was_left_begins_anew),
         cmocka_unit_test(sizes_keep_what_was_learned),
+        cmocka_unit_test(surfaces_are_kept_while_nothing_moves),
         cmocka_unit_test(idle_options_and_aovs_reset_nothing),
         cmocka_unit_test(what_is_kept_is_unbiased),
         cmocka_unit_test(a_restart_begins_the_mean_alone),

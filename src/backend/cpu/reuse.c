@@ -92,7 +92,7 @@ static bool fetch_history(const stage_run *run, combining *c) {
     uint32_t x[BLOCK], y[BLOCK], places = run->k->history_places(&run->ctx, g, x, y);
     if (!places)
         return false;
-    const gblock *from = b->g[1 - run->frame->gbuffer];
+    const gblock *from = b->g[run->frame->previous_gbuffer];
     const rblock *r = b->r[run->stage->source];
     neighbour *n = c->n;
     int first = __builtin_ctz(places), dx = (int)x[first] - (first & 3), dy = (int)y[first] - (first >> 2);
