@@ -171,8 +171,8 @@ NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFA
 /* Settings for a purpose, chosen by measurement (docs/measurements.md, "Presets"). */
 typedef enum noc_preset {
     NOC_PRESET_STILL,      /* least error after a minute: the defaults */
-    NOC_PRESET_INTERACTIVE /* least error of the first frames and of single ones under a moving camera, in half the time
-                            */
+    NOC_PRESET_INTERACTIVE /* least error of the first frames, and of single ones under a moving camera, for their time:
+                              shorter lists */
 } noc_preset;
 
 /* Sets all that says how light is estimated and reused; the picture's size, seed, sky and the like stay as they are. */

@@ -39,7 +39,7 @@ run render lamp.yaml --animate --path round --duration 1 --fps 4 --samples 1 -o 
 test "$(numbers . 'round-*.png')" = 4; result $? "a loop's pictures"
 
 # interrupted anywhere, with and without reuse of samples: the same pictures
-for way in "--smooth --segment 4" "" "--preset interactive --segment 4" "--segment 3"; do
+for way in "--smooth --segment 4" "" "--method restir --no-spatial --segment 4" "--segment 3"; do
     rm -rf whole part && mkdir whole part
     # shellcheck disable=SC2086 # options, or none
     run render lamp.yaml --animate --frames 9 --samples 2 $way -o whole/%02d.png
@@ -187,7 +187,7 @@ paths:
       - { eye: [5, -12, 404], target: [5, 0, 403], hour: 21 }
       - { eye: [5, -12, 404], target: [5, 0, 403], hour: 4, seconds: 2 }
 END
-pictures="--animate --frames 6 --fps 2 --samples 2 --preset interactive --segment 4 --no-mp4"
+pictures="--animate --frames 6 --fps 2 --samples 2 --method restir --no-spatial --segment 4 --no-mp4"
 mkdir cars cars-part
 # shellcheck disable=SC2086 # options
 run render town.yaml $pictures -o cars/%d.png

@@ -91,8 +91,8 @@ test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG
 result $? "quiet says nothing; endings in capitals count"
 
 run render $small --preset interactive -o b.png
-test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32" &&
-    test "$(meta b.png method) $(meta b.png spatial)" = "restir false"; result $? "a preset is its settings"
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "8 32 64" &&
+    test "$(meta b.png method)" = ris; result $? "a preset is its settings"
 run render $small --tail 99 --preset interactive --shadow-rays 7 -o b.png
 test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"
 result $? "options beside a preset win"
@@ -106,8 +106,7 @@ result $? "options without effect are warned of"
 run render $small --environment-lux 3 --no-environment-light --frames 1 -o b.png
 test $status = 0 && test "$(grep -c 'has no effect: there is no map around the city (--environment FILE)' err)" = 2
 result $? "nor have options of a map that is not there"
-run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 \
-    -o b.png
+run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --frames 1 -o b.png
 test $status = 0 && test ! -s err
 result $? "and those that have one are not"
 run render $small --exposure 4 --compensation 2 -o b.png && cp err told && run render $small --exposure 4 -o c.png

@@ -16,10 +16,8 @@ SPEC
 spec preset.json '{ "name": "*", "preset": "*" }, { "name": "own", "shadow-rays": 2, "preset": "interactive" }'
 spec spelled.json '{ "name": "still", "method": "ris", "candidates": "lists", "list": 64, "tail": 128,
     "shadow-rays": 8 },
-    { "name": "interactive", "method": "restir", "spatial": false, "history": 4, "candidates": "lists", "list": 32,
-    "tail": 32, "shadow-rays": 4 },
-    { "name": "own", "method": "restir", "spatial": false, "history": 4, "candidates": "lists", "list": 32,
-    "tail": 32, "shadow-rays": 2 }'
+    { "name": "interactive", "method": "ris", "candidates": "lists", "list": 32, "tail": 64, "shadow-rays": 8 },
+    { "name": "own", "method": "ris", "candidates": "lists", "list": 32, "tail": 64, "shadow-rays": 2 }'
 run experiment preset.json -o p --cache cache
 test $status = 0 && grep -q ': 6 rows, 6 of them made now' out
 result $? "\"preset\": \"*\" is a configuration of each preset"
@@ -30,8 +28,8 @@ spec shared.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": 
     '"options": { "tail": 48, "preset": "interactive" },'
 run experiment shared.json -o q --cache cache
 spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "method": "ris",
-    "spatial": true, "history": 20, "list": 64, "tail": 128, "shadow-rays": 8 }' \
-    '"options": { "method": "restir", "spatial": false, "history": 4, "list": 32, "tail": 48, "shadow-rays": 4 },'
+    "list": 64, "tail": 128 }' \
+    '"options": { "method": "ris", "list": 32, "tail": 48, "shadow-rays": 8 },'
 run experiment spelled.json -o q --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out
 result $? "one for all configurations is overruled by their own"
@@ -48,7 +46,7 @@ test $status = 0 &&
 # What changes nothing is told once, by where it stands; what counts in one configuration of an entry is not.
 spec idle.json '{ "name": "is", "method": "is", "draws": 8 }, { "name": "*", "method": "ris",
     "candidates": ["power", "lists"], "draws": 8 },
-    { "name": "p", "preset": "interactive", "candidates": "influence",
+    { "name": "p", "preset": "interactive", "method": "restir", "spatial": false, "candidates": "influence",
     "uniform-every": 2 }' '"options": { "rays": 4, "list": 8, "passes": 2 },'
 sed -i 's/"reference": { /"reference": { "tail": 3, /' idle.json
 run experiment idle.json -o i --cache cache

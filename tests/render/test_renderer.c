@@ -446,7 +446,9 @@ static void history_outlives_a_cancelled_frame(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
     noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR);
-    noc_render_use_preset(&p, NOC_PRESET_INTERACTIVE);
+    p.candidates = NOC_CANDIDATES_LISTS;
+    p.spatial = false;
+    p.history = 4;
     p.aovs = 1u << NOC_AOV_CONFIDENCE;
     noc_camera c = view(0);
     noc_view *r = own_view(s, 4, NULL);

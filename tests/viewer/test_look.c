@@ -212,14 +212,11 @@ static void words_say_what_differs(void **state) {
     assert_words(&l, "");
     l = look_default(&moving);
     assert_words(&l, "--preset interactive");
-    set(&l, "temporal", l.render.temporal ? "off" : "on");
+    set(&l, "learn", "off");
     set(&l, "exposure", "-1.5");
     set(&l, "white-balance", "3200");
     set(&l, "environment-lux", "3"); /* there is no map */
-    char expected[200];
-    snprintf(expected, sizeof(expected), "--preset interactive --%stemporal --white-balance 3200 --exposure -1.5",
-             l.render.temporal ? "" : "no-");
-    assert_words(&l, expected);
+    assert_words(&l, "--preset interactive --no-learn --white-balance 3200 --exposure -1.5");
     l = look_default(&still);
     set(&l, "show", "depth");
     set(&l, "show-range", "1,200");
