@@ -30,7 +30,7 @@ static void print_stage(const noc_stage *s) {
 
 static void print_frame(const char *name, const noc_render_params *p) {
     noc_plan plan;
-    noc_plan_make(p, false, 0, &plan);
+    noc_plan_make(p, false, 0, false, &plan);
     printf("  \"%s\": [\n", name);
     for (int i = 0; i < plan.count; i++) {
         print_stage(&plan.stages[i]);
