@@ -36,7 +36,7 @@ static void the_sky_and_luminance_are_those_of_a_picture(void **state) {
     noc_camera c = look(0, -12, 9, 0, 0, 0, 2);
     noc_render_params p = measure(8, 8, NOC_METHOD_REFERENCE);
     p.sky = 0.5;
-    noc_image *image = render(s, &c, &p, 400);
+    noc_image *image = render(s, &c, &p, samples(400));
     double q[3], shown = 0;
     for (int i = 0; i < 64; i++)
         shown += luma(image->rgb + 3 * i) / 64;
@@ -47,11 +47,14 @@ static void the_sky_and_luminance_are_those_of_a_picture(void **state) {
     noc_region *region = region_of(&y, 1);
     noc_ranking *r = noc_ranking_create(view, region, &(noc_ranking_params){ &p, c.eye });
     noc_influence_sum sum;
-    assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .rays = 400000 }, NULL), NOC_OK);
+    assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .rays = (uint64_t)samples(400000) }, NULL), NOC_OK);
     assert_int_equal(noc_ranking_get(r, NULL, 0, NULL, &sum), NOC_OK);
-    assert_true(sum.luminance.value > 0 && fabs(sum.luminance.value - shown) < 4 * sum.luminance.error + 4e-3 * shown);
-    assert_true(fabs(sum.lux.value * 0.5 / M_PI - shown) < 4 * sum.lux.error + 4e-3 * shown);
-    assert_true(sum.sky.value > 0.1 && sum.sky.error < 0.01 * sum.sky.value);
+    assert_true(sum.luminance.value > 0 && sum.sky.value > 0.1);
+    if (!SANITIZED) {
+        assert_true(fabs(sum.luminance.value - shown) < 4 * sum.luminance.error + 4e-3 * shown);
+        assert_true(fabs(sum.lux.value * 0.5 / M_PI - shown) < 4 * sum.lux.error + 4e-3 * shown);
+        assert_true(sum.sky.error < 0.01 * sum.sky.value);
+    }
     assert_true(fabs(sum.sky_share.value - sum.sky.value / sum.lux.value) < 1e-9);
     assert_true(fabs(sum.rest_share.value + sum.sky_share.value - 1) < 1e-9);
     noc_ranking_destroy(r);
@@ -78,11 +81,11 @@ static void shares_are_those_of_brute_force(void **state) {
             double truth = by_reference(s, view, &c, &p, sees, (int)light, 40);
             assert_int_equal(a.rows[i].emitter.light_count, 1);
             assert_true(off(a.rows[i].lux, truth) < 4 && off(a.rows[i].share, truth / all) < 4);
-            assert_true(a.rows[i].lux.error < 0.01 * truth); /* sharp enough to tell */
+            assert_true(SANITIZED || a.rows[i].lux.error < 0.01 * truth); /* sharp enough to tell */
             const noc_influence_row *other = row_of(&b, light);
             worst = fmax(worst, other ? off(other->lux, truth) : 99);
         }
-        assert_true(worst > 8); /* points that count for more than their part are refused */
+        assert_true(SANITIZED || worst > 8); /* points that count for more than their part are refused */
         double shares = a.sum.rest_share.value + a.sum.sky_share.value;
         for (size_t i = 0; i < a.count; i++)
             shares += a.rows[i].share.value;
@@ -132,9 +135,8 @@ static void kinds_are_those_of_brute_force(void **state) {
         for (int i = 0; i < LIGHTS; i++)
             assert_int_equal(noc_scene_set_emission(s, i, made[i]), NOC_OK);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
-        assert_true(truth > 0.02 * all && truth < 0.98 * all);
-        assert_true(off(sum->lux, truth) < 4 && off(sum->share, truth / all) < 4);
-        assert_true(sum->lux.error > 0 && sum->lux.error < 0.01 * truth);
+        assert_true(off(sum->lux, truth) < 4 && off(sum->share, truth / all) < 4 && sum->lux.error > 0);
+        assert_true(SANITIZED || (truth > 0.02 * all && truth < 0.98 * all && sum->lux.error < 0.01 * truth));
         kinds++;
     }
     assert_true(kinds >= 2 && emitters == a.sum.emitters);
@@ -173,7 +175,7 @@ static void errors_cover(void **state) {
         noc_render_params p = no_sky(99991);
         answer truth = ask(view, region, &p, 20000000);
         coverage lux = { 0 }, share = { 0 }, kinds = { 0 };
-        for (uint32_t seed = 1; seed <= 200; seed++) {
+        for (uint32_t seed = 1; seed <= (uint32_t)samples(200); seed++) {
             p.seed = seed * 7919;
             answer a = ask(view, region, &p, 0);
             cover(&lux, a.sum.lux, truth.sum.lux.value);
@@ -190,8 +192,8 @@ static void errors_cover(void **state) {
         double of_kinds = (double)kinds.inside / kinds.of;
         print_message("# %s: %.1f %% of totals, %.1f %% of shares, %.1f %% of a kind within 1.96 standard errors\n",
                       point ? "point" : "floor", 100 * of_lux, 100 * of_shares, 100 * of_kinds);
-        assert_true(of_lux > 0.90 && of_lux < 0.99 && of_kinds > 0.90 && of_kinds < 0.99);
-        assert_true(share.of >= 300 && of_shares > 0.91 && of_shares < 0.985);
+        assert_true(SANITIZED || (of_lux > 0.90 && of_lux < 0.99 && of_kinds > 0.90 && of_kinds < 0.99));
+        assert_true(SANITIZED || (share.of >= 300 && of_shares > 0.91 && of_shares < 0.985));
         noc_region_destroy(region);
     }
     close_view(view);
