@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """turn-tests.py BUILD TIMED TURN: the tests of BUILD whose turn it is at the TURNth of several runs that share the
-work. Tests that took under 10 s in the last run of the build folder TIMED are among them always, of longer ones a
-third. Without that run all of them are."""
+work. Tests that took under 5 s in the last run of the build folder TIMED are among them always, of longer ones a
+quarter. Without that run all of them are."""
 import json
 import subprocess
 import sys
 
-LONG = 10  # s
-SHARE = 3
+LONG = 5  # s
+SHARE = 4
 
 
 def main():
