@@ -70,7 +70,7 @@ tsan: deps-check
 TIME = 60
 fuzz:
 	@tools/install-deps.sh fuzz
-	@[ -e build-fuzz/build.ninja ] || CC=clang meson setup build-fuzz -Dfuzz=true $(SANITIZE) -Dwerror=$(WERROR) -Dexamples=false -Dtests=disabled >/dev/null
+	@[ -e build-fuzz/build.ninja ] || CC=clang meson setup build-fuzz -Dfuzz=true $(SANITIZE) -Ddebug=false -Dc_args=-g1 -Dwerror=$(WERROR) -Dexamples=false -Dtests=disabled >/dev/null
 	@$(NINJA) -C build-fuzz fuzzers
 	@tools/fuzz.sh build-fuzz $(TIME) $(CORPUS)
 
