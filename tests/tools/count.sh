@@ -50,23 +50,23 @@ program c SKIP ''
 expect "programs without TAP are one test each" 1 "1 passed, 1 failed, 1 skipped"
 expect "no tests are no success" 1 "0 passed, 0 failed, 0 skipped"
 
-# tools/turn-tests.py, by which CI shares slow tests out: of three turns each slow test has one, quick ones have all.
+# tools/turn-tests.py, by which CI shares slow tests out: of four turns each slow test has one, quick ones have all.
 build=${NOC_BUILD:?names the build folder}
 meson introspect --tests "$build" | python3 -c '
 import json, sys
 for i, test in enumerate(json.load(sys.stdin)):
-    print(json.dumps({"name": test["name"], "duration": 11 if i % 2 else 9}))' >"$log"
-for turn in 1790000003 1790000004 1790000005; do
+    print(json.dumps({"name": test["name"], "duration": 6 if i % 2 else 4}))' >"$log"
+for turn in 1790000003 1790000004 1790000005 1790000006; do
     python3 "$source_dir/tools/turn-tests.py" "$build" "$work" $turn | tr ' ' '\n'
 done | sort | uniq -c | awk '{ print $1 }' | sort -n | uniq -c |
     awk '{ printf "%s%s x%s", n++ ? ", " : "", $1, $2 }' >"$work/out"
 lines=$(wc -l <"$log")
 count=$((count + 1))
-if [ "$(cat "$work/out")" = "$((lines / 2)) x1, $(((lines + 1) / 2)) x3" ]; then
-    echo "ok $count - of three turns each slow test has one"
+if [ "$(cat "$work/out")" = "$((lines / 2)) x1, $(((lines + 1) / 2)) x4" ]; then
+    echo "ok $count - of four turns each slow test has one"
 else
     failed=1
-    echo "not ok $count - of three turns each slow test has one: $(cat "$work/out") of $lines"
+    echo "not ok $count - of four turns each slow test has one: $(cat "$work/out") of $lines"
 fi
 echo "1..$count"
 exit $failed
