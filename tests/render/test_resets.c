@@ -257,6 +257,24 @@ static void surfaces_are_kept_while_nothing_moves(void **state) {
     }
 }
 
+/* A view that is reset is as a new one, also where the frames after it do not learn what those before it did. */
+static void a_reset_view_is_as_new(void **state) {
+    (void)state;
+    noc_scene *s = yard();
+    for (int i = 0; i < 3; i++) {
+        noc_render_params p = basic(NOC_METHOD_RIS), q = p;
+        q.learn = i != 1;
+        q.final_ray = i != 2;
+        noc_view *v = rendered(s, &p, 4), *fresh = rendered(s, &q, 1);
+        noc_view_reset(v);
+        frame(v, &q);
+        assert_true(equal(v, fresh));
+        close_view(v);
+        close_view(fresh);
+    }
+    noc_scene_destroy(s);
+}
+
 /* AOVs, and options that are idle, are forgotten nowhere. */
 static void idle_options_and_aovs_reset_nothing(void **state) {
     (void)state;
@@ -355,6 +373,7 @@ int main(void) {
         cmocka_unit_test(a_mean_that_was_left_begins_anew),
         cmocka_unit_test(sizes_keep_what_was_learned),
         cmocka_unit_test(surfaces_are_kept_while_nothing_moves),
+        cmocka_unit_test(a_reset_view_is_as_new),
         cmocka_unit_test(idle_options_and_aovs_reset_nothing),
         cmocka_unit_test(what_is_kept_is_unbiased),
         cmocka_unit_test(a_restart_begins_the_mean_alone),

@@ -87,6 +87,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     ctx.at.lists = &w->lists->build;
     t->count = t->cells = 0;
     bool asks = noc_stage_has(run->stage, NOC_PASS_SEEN_BEFORE);
+    float brightness = run->frame->plan->learns ? run->s->list_brightness : 0; /* it is learned, too */
     t->bright = 0;
     run->k->list_fill(&ctx);
     for (int n = 0; n < points->count; n++) {
@@ -102,8 +103,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
             continue;
         t->cell_of[n] = find_priors(run, g, lanes, &w->lists->build.list, t);
         t->asked.fresh = asks ? t->fresh[n] : 0;
-        run->k->list_share(&ctx, g, lanes, at.x, at.y, run->s->list_brightness, &t->cell[t->cell_of[n]].priors,
-                           &t->asked);
+        run->k->list_share(&ctx, g, lanes, at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors, &t->asked);
         for (int l = 0; l < BLOCK; l++)
             t->bright += t->asked.bright[l];
         for (int k = 0; k < t->asked.most; k++)
