@@ -18,11 +18,11 @@ static const noc_option own_options[] = {
     { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of tables" },
     TEXT("only", only, "NAMES", "tables to measure, such as floor,passes; all are named at the end"),
     { "time", "Bench", NOC_OPTION_REAL, offsetof(A, time), 0, 1e6, NULL, "s",
-      "about how long it may take once the inputs are read; 0 = no limit" },
+      "about what it may take once the inputs are read; rows that do not fit are left out; 0 = none are" },
     { "frames", "Bench", NOC_OPTION_INT, offsetof(A, frames), 1, 1000, NULL, "",
       "frames of each row, of which the median is told; fewer where time is short" },
     { "size", "Bench", NOC_OPTION_TEXT, offsetof(A, size), 0, 0, NULL, "WxH",
-      "of all pictures but those of the table resolution" },
+      "of all pictures but those of the table resolution; smaller if time is short and none is given" },
     { "method", "Bench", NOC_OPTION_CHOICE, offsetof(A, method), 0, 0,
       "still|interactive|restir-uniform|restir-influence|restir-bias-rays|restir-lists", "",
       "what is timed as lights, triangles, pixels and threads grow" },
@@ -95,6 +95,9 @@ static int parse_size(bench_args *args) {
         return cli_usage(&cli_bench, "--size: a side is 1 to %d px, not %.60s", NOC_IMAGE_MAX_SIDE, args->size);
     args->width = (int)size[0];
     args->height = (int)size[1];
+    bool given = cli_given(&args->common, "size");
+    args->base_width = !given ? args->width : args->quick ? 96 : 480;
+    args->base_height = !given ? args->height : args->quick ? 54 : 270;
     return CLI_OK;
 }
 
@@ -191,11 +194,13 @@ static int work(bench *b) {
     b->device = noc_device_create(&(noc_device_params){ .threads = args->threads }, b->log);
     if (!b->device)
         return CLI_FAILURE;
-    if (!args->json)
+    b->begun = cli_now();
+    status = bench_probe(b);
+    cli_progress_clear();
+    if (!status && !args->json)
         bench_print_head(b);
     fflush(stdout);
-    b->begun = cli_now();
-    status = bench_measure(b, args->json ? print_nothing : print_section);
+    status = status ? status : bench_measure(b, args->json ? print_nothing : print_section);
     cli_nothing_to_keep(false);
     bool interrupted = status == NOC_ERR_CANCELLED && cli_interrupted();
     if (status && !interrupted)
@@ -225,6 +230,7 @@ static int run(void *arguments) {
     b->log = cli_log_create(&args->common);
     status = work(b);
     cli_progress_clear();
+    noc_view_destroy(b->kept);
     noc_device_destroy(b->device);
     noc_scene_destroy(b->scene);
     noc_log_destroy(b->log);

@@ -36,6 +36,7 @@ typedef struct bench_args {
     noc_builtin_params builtin;
     bool sections[BENCH_SECTIONS]; /* that are asked for */
     int width, height;
+    int base_width, base_height; /* of the first row of the table resolution */
 } bench_args;
 
 /* A row of a section's table. What does not apply to it is 0. */
@@ -46,7 +47,7 @@ typedef struct bench_row {
     int width, height, threads;
     size_t triangles, lights;
     double load_seconds;   /* of its scene, where it has one of its own */
-    double candidates;     /* a thread second */
+    double candidates;     /* in a second of thread time */
     size_t surface_pixels; /* that they are drawn for */
     noc_lab_times times;
 } bench_row;
@@ -57,7 +58,7 @@ typedef struct bench_left {
     char what[48], why[160];
 } bench_left;
 
-enum { BENCH_ROWS = 96, BENCH_LEFT = 24 };
+enum { BENCH_ROWS = 96, BENCH_LEFT = 48 };
 
 typedef struct bench {
     bench_args *args;
@@ -66,6 +67,9 @@ typedef struct bench {
     noc_scene *scene;
     noc_scene_info info;
     double load_seconds, begun;
+    noc_view *kept;                /* the first picture: while it is there, so is the ray tracing structure */
+    double frame;                  /* s, by the clock: of a frame of it at the size that is measured, about */
+    double large;                  /* s: of a frame at the default size, where smaller pictures are taken; else 0 */
     bool measured[BENCH_SECTIONS]; /* with at least one round of each row */
     bench_row rows[BENCH_ROWS];
     size_t row_count;
@@ -74,6 +78,8 @@ typedef struct bench {
 } bench;
 
 /* bench_measure.c */
+/* A first picture, whose time says how large the others are. */
+noc_status bench_probe(bench *b);
 /* All that is asked for. printed is called after each section that is there. */
 noc_status bench_measure(bench *b, void (*printed)(const bench *b, bench_section section));
 noc_status bench_load(bench *b, bool windows, noc_scene **scene); /* the inputs */
@@ -81,6 +87,7 @@ double bench_ratio(double a, double b);                           /* NAN where t
 /* The first row of a section of that name, and view where it is not NULL; NULL: there is none. */
 const bench_row *bench_find(const bench *b, bench_section section, const char *view, const char *name);
 double bench_pass_sum(const noc_lab_times *times);
+size_t bench_rows_of(const bench *b, bench_section section);
 /* bench_room.c: memory that may still be taken, bytes. */
 double bench_room(const noc_import_params *import);
 const char *bench_processor(char text[80]); /* its name; "unknown" */

@@ -48,8 +48,8 @@ static void row(FILE *out, const bench_row *r) {
     if (s->floors) {
         number(out, "floor_wall_s", s->floor.wall_seconds);
         number(out, "floor_cpu_s", s->floor.cpu_seconds);
-        number(out, "floor_ratio", bench_ratio(s->wall_seconds, s->floor.wall_seconds));
-        number(out, "floor_ratio_cpu", bench_ratio(s->cpu_seconds, s->floor.cpu_seconds));
+        number(out, "floor_ratio", bench_ratio(s->cpu_seconds, s->floor.cpu_seconds));
+        number(out, "floor_ratio_wall", bench_ratio(s->wall_seconds, s->floor.wall_seconds));
     }
     number(out, "rays_primary", (double)s->last.rays_primary);
     number(out, "rays_shadow", (double)s->last.rays_shadow);
@@ -78,10 +78,10 @@ static void rows(const bench *b, FILE *out, bench_section section) {
     }
 }
 
-/* {"street": {"still": 1.5, ...}, ...}: by the clock. */
-static void floor_ratios(const bench *b, FILE *out) {
+/* {"street": {"still": 1.5, ...}, ...}: by CPU time, or by the clock. */
+static void floor_ratios(const bench *b, FILE *out, const char *name, bool wall) {
     const char *view = "";
-    fprintf(out, ",\n  \"floor_ratio\": {");
+    fprintf(out, ",\n  \"%s\": {", name);
     for (size_t i = 0; i < b->row_count; i++) {
         const bench_row *r = &b->rows[i];
         if (r->section != BENCH_FLOOR)
@@ -92,7 +92,9 @@ static void floor_ratios(const bench *b, FILE *out) {
             fputs(", ", out);
         view = r->view;
         fprintf(out, "\"%s\": ", r->name);
-        cli_json_number(out, bench_ratio(r->times.wall_seconds, r->times.floor.wall_seconds));
+        const noc_lab_times *s = &r->times;
+        cli_json_number(out, wall ? bench_ratio(s->wall_seconds, s->floor.wall_seconds)
+                                  : bench_ratio(s->cpu_seconds, s->floor.cpu_seconds));
     }
     fputs(*view ? "}}" : "}", out);
 }
@@ -131,8 +133,10 @@ void bench_json(const bench *b, bool complete, FILE *out) {
     number(out, "load_s", b->load_seconds);
     fprintf(out, "},\n  \"width\": %d, \"height\": %d, \"method\": \"%s\"", args->width, args->height,
             bench_method_names[args->method]);
-    if (b->measured[BENCH_FLOOR] || b->measured[BENCH_PASSES])
-        floor_ratios(b, out);
+    if (b->measured[BENCH_FLOOR] || b->measured[BENCH_PASSES]) {
+        floor_ratios(b, out, "floor_ratio", false);
+        floor_ratios(b, out, "floor_ratio_wall", true);
+    }
     const char *before = "";
     fprintf(out, ",\n  \"tables\": {");
     for (int s = 0; s < BENCH_MEMORY; s++) {

@@ -37,6 +37,13 @@ static noc_render_params params_of_candidates(const bench_args *args, noc_candid
 
 double bench_ratio(double a, double b) { return b > 0 ? a / b : NAN; }
 
+size_t bench_rows_of(const bench *b, bench_section section) {
+    size_t count = 0;
+    for (size_t i = 0; i < b->row_count; i++)
+        count += b->rows[i].section == section;
+    return count;
+}
+
 double bench_pass_sum(const noc_lab_times *times) {
     double sum = 0;
     for (int p = 0; p < NOC_PASS_COUNT; p++)
@@ -66,27 +73,35 @@ typedef struct turn {
     noc_scene *scenes[SCENES];
     noc_device *devices[DEVICES];
     size_t scene_count, device_count;
-    double made, last, round; /* s: what the last case took to be made, its share of a round, and a whole round */
+    double made, frame, round; /* s: what the last case took to be made, a frame of it, and a whole round */
 } turn;
 
 static void at_work(turn *t, const char *what) { snprintf(t->what, sizeof(t->what), "%s", what); }
 
+/* Frames of a round that one is, with its trace floor: that is of a frame more. */
+static double frames_of(bool floor) { return floor ? 2.7 : 1; }
+
+/* When all is over. */
+static double last_moment(const bench *b) { return b->args->time > 0 ? b->begun + b->args->time : INFINITY; }
+
 /* Of the time that is left, by what the sections that are still to come are worth. */
 static double deadline(const bench *b, bench_section section) {
     static const double worth[BENCH_SECTIONS] = {
-        [BENCH_FLOOR] = 12,     [BENCH_CANDIDATES] = 2, [BENCH_LIGHTS] = 8,  [BENCH_WINDOWS] = 2,
-        [BENCH_TRIANGLES] = 12, [BENCH_RESOLUTION] = 8, [BENCH_THREADS] = 2, [BENCH_ISA] = 4
+        [BENCH_FLOOR] = 12,     [BENCH_CANDIDATES] = 2, [BENCH_LIGHTS] = 8,  [BENCH_WINDOWS] = 4,
+        [BENCH_TRIANGLES] = 12, [BENCH_RESOLUTION] = 8, [BENCH_THREADS] = 4, [BENCH_ISA] = 6
     };
-    double now = cli_now(), end = b->begun + b->args->time, sum = 0;
+    double now = cli_now(), end = last_moment(b), sum = 0;
     if (!(b->args->time > 0))
         return INFINITY;
     for (int s = (int)section; s < BENCH_SECTIONS; s++)
-        sum += b->args->sections[s] ? worth[s] : 0;
+        sum += b->args->sections[s] || s == (int)section ? worth[s] : 0;
     return sum > 0 && end > now ? now + (end - now) * worth[section] / sum : now;
 }
 
 static noc_status begin(bench *b, bench_section section, turn *t) {
-    *t = (turn){ .b = b, .section = section, .deadline = deadline(b, section), .first = b->row_count };
+    *t = (turn){
+        .b = b, .section = section, .deadline = deadline(b, section), .first = b->row_count, .frame = b->frame
+    };
     t->timer = noc_lab_timer_create(b->log);
     return t->timer ? NOC_OK : NOC_ERR_MEMORY;
 }
@@ -104,9 +119,12 @@ static bool show(void *user, const char *what, double done) {
     const bench *b = t->b;
     double spent = cli_now() - b->begun, whole = b->args->time;
     (void)what, (void)done;
-    cli_progress_show(whole > 0 ? spent / whole : (double)t->section / BENCH_SECTIONS,
-                      whole > 0 ? (whole > spent ? whole - spent : 0) : -1, "%s: %s", bench_section_names[t->section],
-                      t->what);
+    bool over = whole > 0 && spent >= whole;
+    cli_progress_show(over        ? 0.99
+                      : whole > 0 ? spent / whole
+                                  : (double)t->section / BENCH_SECTIONS,
+                      whole > 0 && !over ? whole - spent : -1, over ? "%s: %s, the last of it" : "%s: %s",
+                      bench_section_names[t->section], t->what);
     return !cli_interrupted();
 }
 
@@ -119,11 +137,12 @@ static void leave_out(bench *b, bench_section section, const char *what, const c
     snprintf(left->why, sizeof(left->why), "%s", why);
 }
 
-/* Is there time and memory for a case that takes so many seconds to be made, and so many times as long to be rendered
- * as the last one? Two rounds must be possible with it. */
-static bool fits(turn *t, const char *what, double made, double frame, double bytes) {
-    double seconds = made + 4 * t->last * frame + 2 * t->round, left = t->deadline - cli_now();
-    double room = bench_room(&t->b->args->import);
+/* Is there time and memory for a case that takes so many seconds to be made, and for a frame? Two rounds must be
+ * possible with it; of the first case of a table one, in all the time that is left. */
+static bool fits(turn *t, const char *what, double made, double frame, bool floor, double bytes) {
+    bool first = t->b->row_count == t->first;
+    double seconds = made + frame * (2 + (first ? 1 : 2) * frames_of(floor)) + 2 * t->round;
+    double left = (first ? last_moment(t->b) : t->deadline) - cli_now(), room = bench_room(&t->b->args->import);
     char why[160], a[32], c[32];
     if (bytes > 0.8 * room) {
         snprintf(why, sizeof(why), "needs about %s of memory, and %s are free", noc_text_bytes(a, (uint64_t)bytes),
@@ -131,7 +150,7 @@ static bool fits(turn *t, const char *what, double made, double frame, double by
         leave_out(t->b, t->section, what, why);
         return false;
     }
-    if (t->b->row_count > t->first && seconds > left) {
+    if (seconds > left) {
         snprintf(why, sizeof(why), "would take about %s, and %s of --time are left for these",
                  noc_text_seconds(a, seconds), noc_text_seconds(c, left > 0 ? left : 0));
         leave_out(t->b, t->section, what, why);
@@ -152,7 +171,6 @@ static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     status = status ? status : noc_lab_timer_get(t->timer, b->row_count - t->first, &times);
     if (status)
         return status;
-    double frame = times.last.wall_seconds * (of->floor ? 2.7 : 1); /* with the floor and the frame that it is of */
     noc_scene_info info;
     noc_scene_get_info(of->scene, &info);
     bench_row *into = &b->rows[b->row_count++];
@@ -163,8 +181,8 @@ static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     into->triangles = info.triangles;
     into->lights = info.lights;
     t->made = row->load_seconds + times.first.build_seconds + times.lights.build_seconds;
-    t->last = frame;
-    t->round += frame;
+    t->frame = times.last.wall_seconds;
+    t->round += t->frame * frames_of(of->floor);
     return NOC_OK;
 }
 
@@ -210,7 +228,7 @@ static noc_status measure_floor(bench *b) {
     const bench_args *args = b->args;
     bool timed = args->sections[BENCH_FLOOR] || args->sections[BENCH_PASSES];
     noc_status status = NOC_OK;
-    double last = timed ? deadline(b, BENCH_FLOOR) : 0, now = cli_now();
+    double last = deadline(b, BENCH_FLOOR), now = cli_now();
     for (int v = 0; !status && v < 2; v++) {
         turn t;
         noc_lab_case of = { .device = b->device, .scene = b->scene, .floor = timed };
@@ -221,7 +239,10 @@ static noc_status measure_floor(bench *b) {
             bench_row row = { .view = names[v] };
             snprintf(row.name, sizeof(row.name), "%s", bench_method_names[m]);
             of.render = params_of(args, m);
-            status = add(&t, &of, &row);
+            char what[48];
+            snprintf(what, sizeof(what), "%s, %s", names[v], row.name);
+            if (!timed || fits(&t, what, 0, t.frame, true, 0))
+                status = add(&t, &of, &row);
         }
         status = status ? status : go(&t, timed ? args->frames : 0);
         end(&t);
@@ -266,6 +287,8 @@ static noc_status measure_candidates(bench *b) {
     enum { PICKERS = sizeof(pickers) / sizeof(*pickers) };
     const bench_args *args = b->args;
     noc_lab_case of = { .device = b->device, .scene = b->scene };
+    noc_pass passes[PICKERS];
+    bool timed = args->sections[BENCH_CANDIDATES];
     size_t pixels = 0;
     turn t;
     noc_status status = begin(b, BENCH_CANDIDATES, &t);
@@ -275,11 +298,14 @@ static noc_status measure_candidates(bench *b) {
         bench_row row = { .surface_pixels = pixels };
         snprintf(row.name, sizeof(row.name), "%s", pickers[i].name);
         of.render = params_of_candidates(args, pickers[i].candidates);
+        if (timed && !fits(&t, row.name, 0, t.frame, false, 0))
+            continue;
+        passes[b->row_count - t.first] = pickers[i].pass;
         status = add(&t, &of, &row);
     }
-    status = status ? status : go(&t, args->sections[BENCH_CANDIDATES] ? args->frames : 0);
+    status = status ? status : go(&t, timed ? args->frames : 0);
     for (size_t i = t.first; !status && i < b->row_count; i++)
-        b->rows[i].candidates = rate_of(&b->rows[i].times, pickers[i - t.first].pass, of.render.draws, pixels);
+        b->rows[i].candidates = rate_of(&b->rows[i].times, passes[i - t.first], of.render.draws, pixels);
     end(&t);
     return status;
 }
@@ -299,33 +325,33 @@ static noc_status measure_windows(bench *b) {
     at_work(&t, "windows off");
     cli_nothing_to_keep(false);
     double start = cli_now();
-    if (!status && (status = bench_load(b, false, &t.scenes[0])) == NOC_OK)
-        t.scene_count = 1;
-    bench_row off = { .name = "windows off", .load_seconds = cli_now() - start }, on = { .name = "windows on" };
-    noc_lab_case dark = of;
-    dark.scene = t.scenes[0];
-    status = status ? status : add(&t, &dark, &off);
-    status = status ? status : add(&t, &of, &on);
-    status = status ? status : go(&t, args->frames);
+    if (!status && fits(&t, "windows", b->load_seconds, 2 * t.frame, true, (double)b->info.memory_bytes)) {
+        status = bench_load(b, false, &t.scenes[0]);
+        t.scene_count = !status;
+        bench_row off = { .name = "windows off", .load_seconds = cli_now() - start }, on = { .name = "windows on" };
+        noc_lab_case dark = of;
+        dark.scene = t.scenes[0];
+        status = status ? status : add(&t, &dark, &off);
+        status = status ? status : add(&t, &of, &on);
+        status = status ? status : go(&t, args->frames);
+    }
     end(&t);
     return status;
 }
 
 static noc_status measure_resolution(bench *b) {
-    static const int sizes[][2] = { { 480, 270 }, { 960, 540 }, { 1920, 1080 }, { 3840, 2160 } },
-                     quick[][2] = { { 96, 54 }, { 192, 108 } };
     const bench_args *args = b->args;
-    size_t count = args->quick ? 2 : 4;
+    int count = args->quick ? 2 : 4;
     turn t;
     noc_status status = begin(b, BENCH_RESOLUTION, &t);
-    for (size_t i = 0; !status && i < count; i++) {
-        const int *size = args->quick ? quick[i] : sizes[i];
+    for (int i = 0; !status && i < count; i++) {
+        int size[2] = { args->base_width << i, args->base_height << i };
         noc_lab_case of = { .device = b->device, .scene = b->scene, .render = params_of(args, args->method) };
         bench_row row = { .name = "" };
         snprintf(row.name, sizeof(row.name), "%d x %d", size[0], size[1]);
         of.render.width = size[0];
         of.render.height = size[1];
-        if (!fits(&t, row.name, 0, 4, 400.0 * size[0] * size[1]))
+        if (!fits(&t, row.name, 0, (i ? 4 : 1) * t.frame, false, 400.0 * size[0] * size[1]))
             break;
         status = camera_of(b->scene, NOC_VIEWPOINT_STREET, size[0], size[1], &of.camera);
         status = status ? status : add(&t, &of, &row);
@@ -347,7 +373,8 @@ static noc_status measure_threads(bench *b) {
         bench_row row = { .threads = n };
         snprintf(row.name, sizeof(row.name), "%d", n);
         /* a ray tracing structure a device; more threads cost less time than fewer */
-        if (!fits(&t, row.name, t.made, 1, 300.0 * (double)b->info.triangles))
+        double frame = (n == 1 ? most : 1) * t.frame;
+        if (!fits(&t, row.name, t.made, frame, false, 300.0 * (double)b->info.triangles))
             break;
         of.device = t.devices[t.device_count] = noc_device_create(&(noc_device_params){ .threads = n }, b->log);
         t.device_count += of.device != NULL;
@@ -371,12 +398,15 @@ static noc_status measure_isa(bench *b) {
     for (int isa = NOC_ISA_SCALAR; !status && isa < NOC_ISA_COUNT; isa++) {
         bench_row row = { .surface_pixels = pixels };
         snprintf(row.name, sizeof(row.name), "%s", noc_isa_name((noc_isa)isa));
-        for (int alone = 0; !status && alone < 2 && noc_isa_runs((noc_isa)isa); alone++) {
+        bool runs = noc_isa_runs((noc_isa)isa);
+        /* scalar code takes some five times as long */
+        bool fit = runs && fits(&t, row.name, 0, (isa == NOC_ISA_SCALAR ? 10 : 4) * b->frame, false, 0);
+        for (int alone = 0; !status && alone < 2 && fit; alone++) {
             of.render = alone ? params_of_candidates(args, NOC_CANDIDATES_UNIFORM) : params_of(args, args->method);
             of.render.isa = (noc_isa)isa;
             status = add(&t, &of, &row);
         }
-        if (!noc_isa_runs((noc_isa)isa))
+        if (!runs)
             leave_out(b, BENCH_ISA, row.name, "this processor, or this build, does not have it");
     }
     status = status ? status : go(&t, args->frames);
@@ -423,7 +453,7 @@ static noc_status grow(bench *b, const growth *g) {
         params.city.size = g->section == BENCH_LIGHTS ? params.city.size : g->amount[i];
         char number[32];
         snprintf(what, sizeof(what), "%s %s", noc_text_count(number, (uint64_t)g->count[i]), g->noun);
-        if (!fits(&t, what, made, 1.2, g->bytes * g->count[i]))
+        if (!fits(&t, what, made, (i ? 1.2 : 1) * t.frame, true, g->bytes * g->count[i]))
             break;
         at_work(&t, what);
         if (!show(&t, "", 0))
@@ -465,6 +495,55 @@ static noc_status measure_triangles(bench *b) {
     return grow(b, &g);
 }
 
+/* ---- all of it ---- */
+
+/* Of --time, so that each table asked for has at least its first rows at that size. */
+static void choose_size(bench *b) {
+    static const int sizes[][2] = { { 480, 270 }, { 384, 216 }, { 320, 180 }, { 240, 135 }, { 160, 90 } };
+    /* frames, of each table's first rows with those that do not count */
+    static const double frames[BENCH_SECTIONS] = {
+        [BENCH_FLOOR] = 56,     [BENCH_CANDIDATES] = 12, [BENCH_LIGHTS] = 10, [BENCH_WINDOWS] = 10,
+        [BENCH_TRIANGLES] = 10, [BENCH_RESOLUTION] = 15, [BENCH_THREADS] = 9, [BENCH_ISA] = 40
+    };
+    bench_args *args = b->args;
+    double sum = 0, frame = b->frame, pixels = (double)args->width * args->height;
+    for (int s = 0; s < BENCH_SECTIONS; s++)
+        sum += args->sections[s] || (s == BENCH_FLOOR && args->sections[BENCH_PASSES]) ? frames[s] : 0;
+    /* what is left is for scenes that are made, and for more rounds */
+    for (size_t i = 1; i < sizeof(sizes) / sizeof(*sizes) && b->frame * sum > 0.6 * args->time; i++) {
+        args->width = args->base_width = sizes[i][0];
+        args->height = args->base_height = sizes[i][1];
+        b->frame = frame * args->width * args->height / pixels;
+        b->large = frame;
+    }
+}
+
+static bool show_probe(void *user, const char *what, double done) {
+    (void)user, (void)what;
+    cli_progress_show(0, -1, done > 0 ? "the first picture" : "the ray tracing structure");
+    return !cli_interrupted();
+}
+
+noc_status bench_probe(bench *b) {
+    const bench_args *args = b->args;
+    noc_progress progress = { show_probe, NULL };
+    noc_render_params p = params_of(args, BENCH_STILL);
+    noc_frame_stats stats;
+    noc_camera camera;
+    b->kept = noc_view_create(b->device, b->scene);
+    noc_status status = b->kept ? NOC_OK : NOC_ERR_MEMORY;
+    status = status ? status : camera_of(b->scene, NOC_VIEWPOINT_STREET, args->width, args->height, &camera);
+    for (int i = 0; !status && i < 2; i++)
+        status = noc_view_render(b->kept, &camera, &p, &progress);
+    if (status)
+        return status;
+    noc_view_get_stats(b->kept, &stats);
+    b->frame = stats.wall_seconds;
+    if (args->time > 0 && !args->quick && !cli_given(&args->common, "size"))
+        choose_size(b);
+    return NOC_OK;
+}
+
 noc_status bench_measure(bench *b, void (*printed)(const bench *b, bench_section section)) {
     static noc_status (*const sections[BENCH_SECTIONS])(bench * b) = {
         [BENCH_FLOOR] = measure_floor,         [BENCH_CANDIDATES] = measure_candidates,
@@ -477,7 +556,11 @@ noc_status bench_measure(bench *b, void (*printed)(const bench *b, bench_section
     for (int s = 0; !status && s < BENCH_SECTIONS; s++) {
         bool needed = wanted[s] || (s == BENCH_FLOOR && (wanted[BENCH_PASSES] || wanted[BENCH_MEMORY])) ||
                       (s == BENCH_CANDIDATES && wanted[BENCH_MEMORY]);
-        if (needed && sections[s])
+        bool empty = s == BENCH_PASSES && !bench_rows_of(b, BENCH_FLOOR);
+        bool over = cli_now() >= last_moment(b) && s != BENCH_PASSES && s != BENCH_MEMORY;
+        if (wanted[s] && (empty || over))
+            leave_out(b, (bench_section)s, "all of it", "--time is over");
+        else if (needed && sections[s])
             status = sections[s](b);
         cli_progress_clear();
         b->measured[s] = !status && wanted[s];

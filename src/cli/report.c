@@ -435,7 +435,7 @@ void cli_print_summary(const render_job *job) {
     printf("ray tracing structure %s, ", noc_text_seconds(a, job->last.build_seconds));
     printf("%s a frame (%s)\n", noc_text_seconds(a, job->frame_seconds / job->frames),
            job->last.path ? job->last.path : "");
-    printf("  memory    %s at most\n", noc_text_bytes(a, cli_peak_memory()));
+    printf("  memory    %s at most, of this process\n", noc_text_bytes(a, cli_peak_memory()));
     if (job->last.dropped)
         printf("  dropped   %s, not finite\n", noc_text_many(a, job->last.dropped, "sample"));
 }
@@ -444,7 +444,8 @@ void cli_print_stats(const render_job *job) {
     double sum = 0;
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         sum += job->pass_seconds[i];
-    printf("\n  %-20s %10s %7s   thread time of a frame, mean of %d\n", "pass", "ms", "share", job->frames);
+    printf("\n  %-20s %10s %7s   thread time of a frame (by the clock, all threads), mean of %d\n", "pass", "ms",
+           "share", job->frames);
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         if (job->pass_seconds[i] > 0)
             printf("  %-20s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,
