@@ -3,7 +3,7 @@
 
     bench/obj_city.py MODEL.city.json[.gz] -o city.obj
 
-reads buildings from CityJSON (1.x and 2.0, coordinates in metres, which Nocturne does not read itself) and writes
+reads buildings from CityJSON (1.x and 2.0, coordinates in metres; Nocturne would build its own city of it) and writes
 city.obj, y up, near the origin, and city.mtl beside it: walls and roofs as the polygons they are, a flat ground, dark
 and lit windows, shop fronts, neon signs, and street lamps with emissive faces. Ke is radiance in cd/m2. Lit windows are
 chosen among all so that there are --quads emissive quads, every one a parallelogram. The same model, numbers and seed
