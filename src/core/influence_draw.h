@@ -42,11 +42,12 @@ FN u32 influence_from_list(CTX influence_asked a, u32 bits, u32 n_l) {
     return id;
 }
 
-/* Does the point list the lights of that volume, v? strongest: of those that hold it the ones that give it `least`. */
-FN mask influence_lists(CTX u32 volume, influence v, influence_asked a, real scale, b1 strongest) {
+/* Does the point list the lights of that volume, v of that influence_turn? strongest: of those that hold it the ones
+ * that give it `least`. */
+FN mask influence_lists(CTX u32 volume, influence v, real turn, influence_asked a, real scale, b1 strongest) {
     mask held = and_(influence_holds(v, a.r, scale), a.count > KU(0u));
-    if (strongest)
-        held = and_(held, influence_gives(v, influence_turn(v), a.r) >= a.least);
+    if (strongest && ANY(held))
+        held = and_(held, influence_gives(v, turn, a.r) >= a.least);
     if (ANY(held))
         held = and_(held, influence_seen(PASS volume, a.r));
     return held;

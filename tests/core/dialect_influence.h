@@ -27,12 +27,13 @@ FN void influence_draws(CTX u32 item, u32 key, surf s) {
     u1 row = ITEM_COUNT & 31u;
     u32 at = presample_at(row + 7u, row, shr(key, 28));
     u32 all = scale_u32(presample_bits(row, at, presample_share(512u)), KU(KERNEL_LIGHTS));
-    mask held = influence_lists(PASS all, influence_load(PASS all), a, K(8.0f), true);
+    influence volume = influence_load(PASS all);
+    mask held = influence_lists(PASS all, volume, influence_turn(volume), a, K(8.0f), true);
     put_u32(PASS item, INFLUENCE_FIRST + 0, influence_from_list(PASS a, rng_bits(key, KU(3203u)), KU(KERNEL_LIGHTS)));
     put_real(PASS item, INFLUENCE_FIRST + 1, influence_inverse(held, a, KU(KERNEL_LIGHTS), 32, 4));
     put_u32(PASS item, INFLUENCE_FIRST + 2, at + KU(influence_listed(row + 1u, 4u) * 64u + influence_sets(row)));
     put_real(PASS item, INFLUENCE_FIRST + 3, influence_inverse(a.count > KU(0u), a, KU(KERNEL_LIGHTS), 32, 4));
-    held = influence_lists(PASS all, influence_load(PASS all), a, K(50.0f), false);
+    held = influence_lists(PASS all, volume, K(0.0f), a, K(50.0f), false);
     put_u32(PASS item, INFLUENCE_FIRST + 4, selu(held, KU(1u), KU(0u)));
 }
 

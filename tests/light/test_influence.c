@@ -109,6 +109,7 @@ typedef struct asked {
     surf y[BLOCK];    /* of g */
     noc_found found;
     presample_row rows[DRAWS], shared[DRAWS / EVERY];
+    presample_volumes volumes[DRAWS / EVERY];
     presample_pick1 drawn[DRAWS / EVERY * BLOCK];
     double wrong; /* share added to the pmf of odd lights: a test of the test */
 } asked;
@@ -171,7 +172,8 @@ static void draw(asked *a) {
     a->k->influence_find(&a->ctx, (const gblock *const[2]){ &a->before, &a->g },
                          (const uint32_t[2]){ 0xffff, LANES_ASKED }, 2, &a->found);
     a->k->presample(&a->ctx, 3, DRAWS / EVERY, false, a->drawn, a->shared);
-    a->k->influence_draw(&a->ctx, &a->found, a->found.of[1], 5, DRAWS, a->shared, a->rows);
+    a->k->influence_volumes(&a->ctx, DRAWS / EVERY, a->shared, a->volumes);
+    a->k->influence_draw(&a->ctx, &a->found, a->found.of[1], 5, DRAWS, a->shared, a->volumes, a->rows);
 }
 
 static const noc_found_group *found_by(const asked *a, int l) { return &a->found.group[a->found.of[1][l]]; }

@@ -207,6 +207,7 @@ typedef struct cpu_view {
     bool past_lost;          /* the frame before saw another scene, of which something is not known any more */
     size_t chunks;           /* of lights, that the reference has room for */
     presample_row *samples;  /* that the blocks of a frame share: [PRESAMPLES / 16]; NULL: never asked for */
+    presample_volumes *sample_volumes; /* influence: parallel */
     uint32_t subsets;
     worker *workers;
     int worker_count;

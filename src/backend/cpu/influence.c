@@ -97,9 +97,9 @@ static void make_set(drawing *d, const sixteen *s) {
         else if (l < s->count)
             of[l] = f->of[s->pixel[l] / BLOCK][s->pixel[l] % BLOCK];
     const stage_run *run = d->run;
-    size_t subset = run->k->subset_of(&run->ctx, d->number, run->s->subsets);
-    run->k->influence_draw(&run->ctx, f, of, d->number++, d->m,
-                           run->s->samples + subset * (size_t)noc_cpu_shared_draws(run), d->w->picks->set);
+    size_t first = (size_t)noc_cpu_shared_draws(run) * run->k->subset_of(&run->ctx, d->number, run->s->subsets);
+    run->k->influence_draw(&run->ctx, f, of, d->number++, d->m, run->s->samples + first, run->s->sample_volumes + first,
+                           d->w->picks->set);
 }
 
 /* How often the light that a lane chose is expected among its candidates. */

@@ -23,15 +23,6 @@ FN mask influence_seen(CTX u32 volume, influence_region r) {
     return influence_meets(lo, hi, r);
 }
 
-/* The lines of records of so many floats, and of words, that lanes will ask for. */
-FN void record_prefetch(const float *records, size_t stride, u32 index) {
-    uint32_t at[LANES];
-    ustore(at, index);
-    for (int i = 0; i < LANES; i++)
-        __builtin_prefetch(records + (size_t)at[i] * stride);
-}
-FN void word_prefetch(const uint32_t *base, u32 index) { record_prefetch((const float *)base, 1, index); }
-
 /* ---- what the points find ---- */
 
 FN u1 points_pending(CTX u1 block) { return ctx->at.volumes->pending[block]; }
@@ -142,28 +133,51 @@ FN influence_asked asked_load(const asking *a, int l) {
 
 /* ---- draws ---- */
 
-/* Samples of rows from `first` on are drawn from all lights: they get their densities, by whether the lanes' points
- * list them. `ahead` rows at a time, so that memory is waited for once. */
-static void weigh_uniform(const struct core_context *ctx, influence_asked a, const noc_near_query *q, int l, int first,
-                          int m, real in, real out, presample_row *rows) {
-    enum { AHEAD = 16 };
-    u32 volume[AHEAD];
-    for (; first < m; first += AHEAD) {
-        int n = NOC_MIN(m - first, AHEAD);
-        for (int k = 0; k < n; k++) {
-            volume[k] = influence_volume(ctx, uload(rows[first + k].light + l));
-            record_prefetch(ctx->influence->volumes->c, 8, volume[k]);
+/* The volumes of lights that were drawn from all, once a frame. */
+static void influence_volumes(const struct core_context *ctx, int m, const presample_row *rows,
+                              presample_volumes *out) {
+    for (int i = 0; i < m; i++)
+        for (int l = 0; l < BLOCK; l += LANES) {
+            u32 id = influence_volume(ctx, uload(rows[i].light + l));
+            influence v = influence_load(ctx, id);
+            const v3 three[2] = { v.c, v.m };
+            float(*const to[2])[BLOCK] = { out[i].c, out[i].m };
+            for (int k = 0; k < 2; k++) {
+                rstore(to[k][0] + l, three[k].x);
+                rstore(to[k][1] + l, three[k].y);
+                rstore(to[k][2] + l, three[k].z);
+            }
+            rstore(out[i].size + l, v.size);
+            rstore(out[i].root + l, v.root);
+            rstore(out[i].turn + l, influence_turn(v));
+            ustore(out[i].id + l, id);
         }
-        for (int k = 0; k < n; k++) {
-            mask held = influence_lists(ctx, volume[k], influence_load(ctx, volume[k]), a, K(q->scale), q->least > 0);
-            rstore(rows[first + k].inverse + l, sel(held, in, out));
-        }
+}
+
+FN influence volumes_load(const presample_volumes *p, int l) {
+    influence v;
+    v.c = load3(p->c, l);
+    v.size = rload(p->size + l);
+    v.m = load3(p->m, l);
+    v.root = rload(p->root + l);
+    return v;
+}
+
+/* Samples that are drawn from all lights get their densities, by whether the lanes' points list them. */
+FN void weigh_uniform(CTX influence_asked a, const noc_near_query *q, int l, int m, real in, real out,
+                      const presample_volumes *volumes, presample_row *rows) {
+    for (int i = 0; i < m; i++) {
+        const presample_volumes *p = &volumes[i];
+        mask held = influence_lists(ctx, uload(p->id + l), volumes_load(p, l), rload(p->turn + l), a, K(q->scale),
+                                    q->least > 0);
+        rstore(rows[i].inverse + l, sel(held, in, out));
     }
 }
 
 /* A set of samples for pixels of these groups, a lane each; shared: samples that are drawn from all lights. */
 static void draw_influence(const struct core_context *frame, const noc_found *f, const uint16_t of[BLOCK],
-                           uint32_t number, int m, const presample_row *shared, presample_row *rows) {
+                           uint32_t number, int m, const presample_row *shared, const presample_volumes *volumes,
+                           presample_row *rows) {
     struct core_context c = *frame, *ctx = &c;
     int every = (int)ctx->frame->uniform_every, listed = (int)influence_listed((u1)m, (u1)every);
     u1 key = presample_key(ctx->frame->seed, number, ctx->frame->index, 0);
@@ -185,7 +199,7 @@ static void draw_influence(const struct core_context *frame, const noc_found *f,
             ustore(rows[i].place + l, presample_place(key, j));
             rstore(rows[i].inverse + l, in);
         }
-        weigh_uniform(ctx, q, &f->group[0].query, l, listed, m, in, out, rows);
+        weigh_uniform(ctx, q, &f->group[0].query, l, m - listed, in, out, volumes, rows + listed);
     }
     for (int i = 0; i < listed; i++)
         brief_samples(ctx, &rows[i]);

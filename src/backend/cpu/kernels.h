@@ -38,6 +38,12 @@ typedef struct presample_row {
     float inverse[BLOCK];
     uint32_t light[BLOCK], place[BLOCK];
 } presample_row;
+/* influence: the volumes of their lights, which all sets ask that take them. */
+typedef struct presample_volumes {
+    ALIGNED float c[3][BLOCK];
+    float size[BLOCK], m[3][BLOCK], root[BLOCK], turn[BLOCK]; /* turn: influence_turn */
+    uint32_t id[BLOCK];
+} presample_volumes;
 /* One of them. */
 typedef struct presample_pick1 {
     uint32_t light, place;
@@ -261,12 +267,15 @@ typedef struct kernels {
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
+    /* The volumes of a subset of m rows. */
+    void (*influence_volumes)(const struct core_context *ctx, int m, const presample_row *rows, presample_volumes *out);
     /* What the surfaces of n blocks, a tile, find among the influence volumes; then m rows of samples for pixels of
      * groups that are given, a lane each: set `number` of the frame. shared: those drawn from all lights. */
     void (*influence_find)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
                            noc_found *out);
     void (*influence_draw)(const struct core_context *ctx, const noc_found *found, const uint16_t of[BLOCK],
-                           uint32_t number, int m, const presample_row *shared, presample_row *out);
+                           uint32_t number, int m, const presample_row *shared, const presample_volumes *volumes,
+                           presample_row *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* The pixels of the previous picture that saw this frame's surfaces; returns the lanes that have one. */

@@ -169,6 +169,7 @@ const kernels KERNELS = {
     .list_keep = list_keep,
     .list_mix = list_mix,
     .pick_tree = pick_tree,
+    .influence_volumes = influence_volumes,
     .influence_find = find_influence,
     .influence_draw = draw_influence,
     .given = given,

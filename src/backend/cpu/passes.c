@@ -169,6 +169,9 @@ static void presample(void *arg, size_t subset, int index) {
     double start = noc_wall_seconds();
     run->k->presample(&run->ctx, (uint32_t)subset, m, from == NOC_CANDIDATES_POWER, w->shares->drawn,
                       run->s->samples + subset * (size_t)m);
+    if (from == NOC_CANDIDATES_INFLUENCE)
+        run->k->influence_volumes(&run->ctx, m, run->s->samples + subset * (size_t)m,
+                                  run->s->sample_volumes + subset * (size_t)m);
     w->seconds[from == NOC_CANDIDATES_POWER       ? NOC_PASS_CANDIDATES_POWER
                : from == NOC_CANDIDATES_INFLUENCE ? NOC_PASS_CANDIDATES_INFLUENCE
                                                   : NOC_PASS_CANDIDATES_UNIFORM] += noc_wall_seconds() - start;

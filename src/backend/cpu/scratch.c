@@ -57,7 +57,7 @@ noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan) {
     bool more_bins = found && bins > s->found_bins, more_chunks = all && chunks > s->chunks;
     s->found_bins = more_bins ? bins : s->found_bins;
     s->chunks = more_chunks ? chunks : s->chunks;
-    ok = !shared || MAKE(s->samples, PRESAMPLES / BLOCK);
+    ok = (!shared || MAKE(s->samples, PRESAMPLES / BLOCK)) && (!found || MAKE(s->sample_volumes, PRESAMPLES / BLOCK));
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         ok = ok && (!lists || make_lists(w)) && (!found || make_set(w)) && (!items || make_items(w));
@@ -106,6 +106,8 @@ void noc_cpu_free_scratch(cpu_view *s) {
     }
     free(s->samples);
     s->samples = NULL;
+    free(s->sample_volumes);
+    s->sample_volumes = NULL;
     free(s->workers);
     s->workers = NULL;
     s->worker_count = 0;

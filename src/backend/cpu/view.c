@@ -158,7 +158,8 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
     out->learned_bytes = s->learned ? s->learned->count * sizeof(*s->learned->cells) : 0;
     out->memory_bytes = out->picture_bytes + out->structure_bytes + out->learned_bytes + noc_cpu_light_bytes(s->world) +
                         noc_cpu_past_bytes(s) + s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels) +
-                        (s->samples ? PRESAMPLES / BLOCK * sizeof(*s->samples) : 0);
+                        (s->samples ? PRESAMPLES / BLOCK * sizeof(*s->samples) : 0) +
+                        (s->sample_volumes ? PRESAMPLES / BLOCK * sizeof(*s->sample_volumes) : 0);
     out->path = s->kernels->name;
 }
 
