@@ -24,9 +24,16 @@ uint lane_places(uint first) { return first; }
 #define ITEM_COUNT items
 #include "dialect_kernel.h"
 
+/* Lists are a shader of their own: llvmpipe gives an invocation 65,535 rounds for all its loops together, and then
+ * leaves each loop after its first. */
 void main() {
-    if (gl_GlobalInvocationID.x < items) {
-        dialect_item(gl_GlobalInvocationID.x);
-        dialect_tile(gl_GlobalInvocationID.x);
+    uint item = gl_GlobalInvocationID.x;
+    if (item < items) {
+#ifdef DIALECT_LISTS
+        dialect_tile_lists(item);
+#else
+        dialect_item(item);
+        dialect_tile(item);
+#endif
     }
 }

@@ -402,6 +402,10 @@ FN void dialect_tile(CTX u1 item) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_volumes(PASS item);
     dialect_cells(PASS item);
+}
+
+FN void dialect_tile_lists(CTX u1 item) {
+    dialect_frame = dialect_constants(BIAS_BIASED);
     lists_tile(PASS item);
 }
 

@@ -56,7 +56,9 @@ void JOIN(dialect_run_, LANES)(uint32_t *out, uint32_t items) {
         u32 item;
         memcpy(&item, lane, sizeof(item));
         dialect_item(&ctx, item);
-        for (uint32_t i = 0; i < LANES; i++)
+        for (uint32_t i = 0; i < LANES; i++) {
             dialect_tile(&ctx, first + i);
+            dialect_tile_lists(&ctx, first + i);
+        }
     }
 }
