@@ -1,9 +1,10 @@
 /* core/influence_find.h: what the points of a tile find among the influence volumes.
  *
  * Points that lie close together ask as one, 16 volumes against the box around them, and share a list of lights: a
- * hundredth of the tests, and lights that stay in the cache. Of the lights whose volumes hold them they list the
- * strongest, as many as draw best there (core/influence_rule.h). With an S_r that the user gave they list all. Volumes
- * are looked for once, near all points of a tile; where that is too many, for each group.
+ * hundredth of the tests, and lights that stay in the cache. Packs that do not reach them are passed by. Of the lights
+ * whose volumes hold them they list the strongest, as many as draw best there (core/influence_rule.h). With an S_r that
+ * the user gave they list all. Volumes are looked for once, near all points of a tile; where that is too many, for each
+ * group.
  *
  * Group 0 is that of points that did not ask. Lists of volumes are those of core/influence_near.h: 0 is near all
  * points, 1 near a group. Includers supply the bridges. */
@@ -26,21 +27,22 @@ FN near_query group_load(CTX u1 group);
 /* What it asks with, and what it lists: so many lights, from place `from` of the found ones on. */
 FN void group_store(CTX u1 group, near_query q, u1 from, u1 count);
 
-FN b1 near_lost(CTX u1 list);                  /* there was no room for it */
-FN u32 near_ids(CTX u1 list, u1 first);        /* the volumes at places first, first + 1, ... of a list */
-FN influence near_load(CTX u1 list, u1 first); /* behind its end they hold nothing */
-FN real near_turn(CTX u1 list, u1 first);      /* influence_turn of each */
-FN void near_turn_store(CTX u1 list, u1 first, real turn);
-FN u1 near_id(CTX u1 list, u1 place);
+FN b1 near_lost(CTX u1 list);             /* there was no room for it */
+FN u32 near_ids(CTX u1 list, u1 first);   /* the volumes at places first, first + 1, ... of a list */
+FN real near_turn(CTX u1 list, u1 first); /* influence_turn of each */
 FN f1 near_lights(CTX u1 list, u1 place); /* that share the volume */
 
-FN b1 gives_room(CTX u1 list); /* makes room for a number a volume of the list; false: there is none */
+/* What a group looks at: packs of the list, and what each of their volumes gives. */
+FN b1 gives_room(CTX u1 list); /* makes room for all of the list; false: there is none */
+FN void looked_store(CTX u1 i, u1 pack);
+FN u1 looked_load(CTX u1 i);
 FN void gives_store(CTX u1 first, real gives);
 FN real gives_load(CTX u1 first);
 FN f1 gives_at(CTX u1 place);
 
 FN u1 found_next(CTX u1 group); /* the place where the group's next light goes */
-FN b1 found_add(CTX u1 volume); /* its lights; false: no room */
+/* The lights of those volumes of the list at places first, first + 1, ... that the bits name; false: no room. */
+FN b1 found_add(CTX u1 list, u1 first, u1 bits);
 
 /* ---- which points ask as one ---- */
 
@@ -93,34 +95,49 @@ FN real near_gives(CTX u32 volume, influence v, real turn, influence_region r, f
     return sel(gives >= K(least), gives, K(0.0f));
 }
 
-/* The same of all volumes of a list; where lights are left out, what is given is added to the rule's bins. */
-FN void near_look(CTX u1 list, near_query q, rule_range range) {
+/* The same of a pack, which is the i-th that is looked at; where lights are left out, what is given is added to the
+ * rule's bins. */
+FN void near_look_at(CTX u1 list, u1 pack, u1 i, influence_region r, f1 scale, rule_range range, b1 strongest) {
+    looked_store(PASS i, pack);
+    EACH16(l) {
+        u1 from = pack * 16u + U32(l);
+        u1 to = i * 16u + U32(l);
+        f1 least = 0.0f;
+        if (strongest)
+            least = range.least;
+        real gives = near_gives(PASS near_ids(PASS list, from), near_load(PASS list, from), near_turn(PASS list, from),
+                                r, scale, least);
+        u1 bits = 0u;
+        gives_store(PASS to, gives);
+        if (strongest)
+            bits = lane_bits(gives > K(0.0f));
+        for (; bits != 0u; bits = bits & (bits - 1u))
+            rule_add(PASS range, near_lights(PASS list, from + low_bit(bits)), gives_at(PASS to + low_bit(bits)));
+    }
+}
+
+/* Returns how many packs were looked at. */
+FN u1 near_look(CTX u1 list, near_query q, rule_range range) {
     influence_region r = near_region(q);
-    for (u1 i = 0u; i < near_count(PASS list); i = i + 16u)
-        EACH16(l) {
-            u1 first = i + U32(l);
-            real gives = near_gives(PASS near_ids(PASS list, first), near_load(PASS list, first),
-                                    near_turn(PASS list, first), r, q.scale, q.least);
-            u1 bits = 0u;
-            gives_store(PASS first, gives);
-            if (q.least > 0.0f)
-                bits = lane_bits(gives > K(0.0f));
-            for (; bits != 0u; bits = bits & (bits - 1u)) {
-                u1 place = first + low_bit(bits);
-                rule_add(PASS range, near_lights(PASS list, place), gives_at(PASS place));
-            }
+    u1 packs = shr(near_count(PASS list) + 15u, 4);
+    u1 looked = 0u;
+    for (u1 first = 0u; first < packs; first = first + 16u)
+        for (u1 bits = packs_near(PASS list, first, r, near_scale(q)); bits != 0u; bits = bits & (bits - 1u)) {
+            near_look_at(PASS list, first + low_bit(bits), looked, r, q.scale, range, q.least > 0.0f);
+            looked++;
         }
+    return looked;
 }
 
 /* Finds the lights of volumes that give at least `least`. False: no room. */
-FN b1 near_take(CTX u1 list, f1 least) {
+FN b1 near_take(CTX u1 list, u1 looked, f1 least) {
     b1 room = true;
-    for (u1 i = 0u; i < near_count(PASS list) && room; i = i + 16u) {
-        u1 bits = 0u;
-        EACH16(l) bits = bits | shl(lane_bits(gives_load(PASS i + U32(l)) >= K(least)), l);
-        for (; bits != 0u && room; bits = bits & (bits - 1u))
-            room = found_add(PASS near_id(PASS list, i + low_bit(bits)));
-    }
+    for (u1 i = 0u; i < looked && room; i++)
+        EACH16(l) {
+            u1 bits = lane_bits(gives_load(PASS i * 16u + U32(l)) >= K(least));
+            if (bits != 0u && room)
+                room = found_add(PASS list, looked_load(PASS i) * 16u + U32(l), bits);
+        }
     return room;
 }
 
@@ -134,12 +151,12 @@ CALL b1 group_finds(CTX u1 list, u1 group, influence_rule rule, f1 n_l, f1 every
         f1 least = 1.0f;
         if (q.least > 0.0f)
             range = rule_begin(PASS q.least);
-        near_look(PASS list, q, range);
+        u1 looked = near_look(PASS list, q, range);
         if (q.least > 0.0f) {
             q.least = max1(rule_best(PASS range, rule, n_l, every), q.least);
             least = q.least;
         }
-        room = near_take(PASS list, least);
+        room = near_take(PASS list, looked, least);
         u1 count = found_next(PASS group) - from;
         if (count == 0u)
             from = 0u;
@@ -150,14 +167,6 @@ CALL b1 group_finds(CTX u1 list, u1 group, influence_rule rule, f1 n_l, f1 every
 
 /* ---- a tile ---- */
 
-/* What is near a query, into a list. False: not all of it. */
-CALL b1 near_search(CTX u1 list, near_query q) {
-    b1 all = influence_near(PASS list, q);
-    for (u1 i = 0u; i < near_count(PASS list); i = i + 16u)
-        EACH16(l) near_turn_store(PASS list, i + U32(l), influence_turn(near_load(PASS list, i + U32(l))));
-    return all;
-}
-
 /* What the points of a tile of so many blocks find: `none` is near_asks, usual the root of the median light, n_l the
  * lights of the scene, of draws every `every`th is from all of them. Returns the number of groups, or 0: no room. */
 FN u1 influence_find(CTX u1 blocks, near_query none, f1 usual, influence_rule rule, f1 n_l, f1 every) {
@@ -165,14 +174,14 @@ FN u1 influence_find(CTX u1 blocks, near_query none, f1 usual, influence_rule ru
     near_query all = near_none(none.scale, 0.0f, INFLUENCE_TILE);
     for (u1 i = 1u; i < groups; i++)
         all = near_join(all, group_load(PASS i));
-    b1 together = near_search(PASS 0u, all);
+    b1 together = influence_near(PASS 0u, all);
     b1 room = !near_lost(PASS 0u);
     u1 list = 1u;
     if (together)
         list = 0u;
     for (u1 i = 1u; i < groups && room; i++) {
         if (!together)
-            near_search(PASS 1u, group_load(PASS i));
+            influence_near(PASS 1u, group_load(PASS i));
         room = !near_lost(PASS list) && group_finds(PASS list, i, rule, n_l, every);
     }
     if (!room)

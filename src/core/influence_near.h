@@ -4,7 +4,10 @@
  *
  * A backend has a list for what is near a tile, and one for what is near a group of its points, each with as much room
  * as it likes. A search that finds more than `most` volumes or no room ends, and tells: then the points of a tile look
- * for themselves, group by group, and points that find no room so list nothing and draw from all lights. */
+ * for themselves, group by group, and points that find no room so list nothing and draw from all lights.
+ *
+ * 16 volumes of a list after the other are a pack, with a box around it, so that a group of points passes by packs that
+ * are too far away for it. */
 #ifndef CORE_INFLUENCE_NEAR_H
 #define CORE_INFLUENCE_NEAR_H
 
@@ -37,9 +40,14 @@ FN near_half near_half_load(CTX u1 k);
 FN near_children near_children_load(CTX u1 k, u1 level, u1 node, u1 l);
 /* Volumes from `first` on; those from `end` on hold nothing. */
 FN influence near_volumes_load(CTX u1 first, u1 end);
+FN void near_ask_ahead(CTX u1 first); /* that 16 volumes from there on will be loaded */
 FN void near_clear(CTX u1 list);
-FN b1 near_add(CTX u1 list, u1 volume); /* false: no room */
+/* Of volumes first, first + 1, ..., which are v, with their influence_turn, those of the bits. False: no room. */
+FN b1 near_add(CTX u1 list, u1 first, u1 bits, influence v, real turn);
 FN u1 near_count(CTX u1 list);
+FN influence near_load(CTX u1 list, u1 first); /* those at places first, first + 1, ...; behind its end: nothing */
+FN void near_pack_store(CTX u1 list, u1 pack, f3 lo, f3 hi, f1 root);
+FN near_children near_packs_load(CTX u1 list, u1 first); /* packs first, first + 1, ...; behind its end: root = 0 */
 
 /* Is lo..hi within reach of the region, and not wholly behind its surfaces? Their normals are the same to 1e-5, and the
  * coordinates have their own precision, hence the 2 cm. */
@@ -71,20 +79,58 @@ FN u1 children_near(CTX u1 k, u1 level, u1 node, influence_region r, real scale)
 
 /* Adds the volumes of a leaf that could hold a point. False: no room. */
 FN b1 leaf_near(CTX u1 list, near_half h, u1 leaf, influence_region r, real scale) {
-    u1 first = h.first + leaf * 16u;
-    u1 bits = 0u;
-    EACH16(l) { bits = bits | shl(lane_bits(volume_near(near_volumes_load(PASS first + l, h.end), r, scale)), l); }
-    for (; bits != 0u; bits = bits & (bits - 1u))
-        if (!near_add(PASS list, first + low_bit(bits)))
-            return false;
-    return true;
+    b1 room = true;
+    EACH16(l) {
+        u1 first = h.first + leaf * 16u + U32(l);
+        influence v = near_volumes_load(PASS first, h.end);
+        u1 bits = lane_bits(volume_near(v, r, scale));
+        if (bits != 0u && room)
+            room = near_add(PASS list, first, bits, v, influence_turn(v));
+    }
+    return room;
 }
 
+/* What the packs of a list lie in. */
+FN void near_bound_packs(CTX u1 list) {
+    f1 none = -f1_of_bits(NEAR_INFINITY);
+    for (u1 i = 0u; i < near_count(PASS list); i = i + 16u) {
+        f3 lo = F3(none, none, none); /* signs turned */
+        f3 hi = lo;
+        f1 root = 0.0f;
+        EACH16(l) {
+            influence v = near_load(PASS list, i + U32(l));
+            mask there = v.root > K(0.0f);
+            lo = F3(max1(lo.x, lane_max(sel(there, v.size - v.c.x, K(none)))),
+                    max1(lo.y, lane_max(sel(there, v.size - v.c.y, K(none)))),
+                    max1(lo.z, lane_max(sel(there, v.size - v.c.z, K(none)))));
+            hi = F3(max1(hi.x, lane_max(sel(there, v.c.x + v.size, K(none)))),
+                    max1(hi.y, lane_max(sel(there, v.c.y + v.size, K(none)))),
+                    max1(hi.z, lane_max(sel(there, v.c.z + v.size, K(none)))));
+            root = max1(root, lane_max(v.root));
+        }
+        near_pack_store(PASS list, shr(i, 4), F3(-EACH16_MAX(lo.x), -EACH16_MAX(lo.y), -EACH16_MAX(lo.z)),
+                        F3(EACH16_MAX(hi.x), EACH16_MAX(hi.y), EACH16_MAX(hi.z)), EACH16_MAX(root));
+    }
+}
+
+/* Bits of the 16 packs from `first` on that could hold a point. */
+FN u1 packs_near(CTX u1 list, u1 first, influence_region r, real scale) {
+    u1 bits = 0u;
+    EACH16(l) {
+        near_children c = near_packs_load(PASS list, first + U32(l));
+        bits = bits | shl(lane_bits(box_near(c.lo, c.hi, r, c.root * scale)), l);
+    }
+    return bits;
+}
+
+/* Rounding must not lose what the exact test would take. */
+FN real near_scale(near_query q) { return K(q.scale * 1.00001f); }
+
 /* Fills the list. False: it has not all that there is. */
-FN b1 influence_near(CTX u1 list, near_query q) {
+CALL b1 influence_near(CTX u1 list, near_query q) {
     influence_region r = near_region(q);
-    real scale = K(q.scale * 1.00001f); /* rounding must not lose what the exact test would take */
-    u1 stack[NEAR_STACK];               /* level from bit 28 on, node */
+    real scale = near_scale(q);
+    u1 stack[NEAR_STACK]; /* level from bit 28 on, node */
     b1 fits = true;
     near_clear(PASS list);
     for (u1 k = 0u; k < NEAR_HALVES; k++) {
@@ -98,8 +144,11 @@ FN b1 influence_near(CTX u1 list, near_query q) {
             depth--;
             u1 level = shr(stack[depth], 28);
             u1 node = stack[depth] & 0x0fffffffu;
-            for (u1 bits = children_near(PASS k, level, node, r, scale); bits != 0u && fits;
-                 bits = bits & (bits - 1u)) {
+            u1 near = children_near(PASS k, level, node, r, scale);
+            if (level == 0u)
+                for (u1 bits = near; bits != 0u; bits = bits & (bits - 1u))
+                    near_ask_ahead(PASS h.first + (node * 16u + low_bit(bits)) * 16u);
+            for (u1 bits = near; bits != 0u && fits; bits = bits & (bits - 1u)) {
                 u1 child = node * 16u + low_bit(bits);
                 if (level > 0u) {
                     stack[depth] = shl(level - 1u, 28) | child;
@@ -110,6 +159,7 @@ FN b1 influence_near(CTX u1 list, near_query q) {
             }
         }
     }
+    near_bound_packs(PASS list);
     return fits;
 }
 

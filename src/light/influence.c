@@ -29,9 +29,25 @@ noc_near_query noc_near_point(const float p[3], const float n[3], float scale) {
 
 void noc_found_free(noc_found *f) {
     array_free(&f->ids);
-    array_free(&f->near[0].groups);
-    array_free(&f->near[1].groups);
+    for (int i = 0; i < 2; i++) {
+        free(f->near[i].data);
+        array_free(&f->near[i].packs);
+    }
+    array_free(&f->looked);
     array_free(&f->gives);
+}
+
+bool noc_near_grow(noc_near *n) {
+    size_t room = n->room ? 2 * n->room : 1040; /* a power of two, and fields would fight for lines of the cache */
+    float *data = noc_alloc_large(room * NOC_NEAR_FIELDS, sizeof(*data));
+    if (!data)
+        return false;
+    for (size_t k = 0; k < NOC_NEAR_FIELDS && n->data; k++)
+        memcpy(data + k * room, n->data + k * n->room, n->count * sizeof(*data));
+    free(n->data);
+    n->data = data;
+    n->room = room;
+    return true;
 }
 
 bool noc_influence_finds(const noc_influence *v, uint32_t light, const noc_near_query *q) {

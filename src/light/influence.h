@@ -125,18 +125,26 @@ bool noc_influence_lacks_scale(const noc_influence *influence, const noc_influen
 
 /* ---- queries ---- */
 
-/* Volumes near a box, 16 to a group. Groups are padded with volumes that hold nothing. */
-typedef struct noc_near_group {
-    float c[3][16], size[16], m[3][16], root[16], turn[16], lights[16]; /* turn: influence_turn */
-    uint32_t volume[16];
-} noc_near_group;
+/* Numbers that are kept of a volume near a box, each beside the same of the next one. */
+enum {
+    NOC_NEAR_C,
+    NOC_NEAR_SIZE = NOC_NEAR_C + 3,
+    NOC_NEAR_M,
+    NOC_NEAR_ROOT = NOC_NEAR_M + 3,
+    NOC_NEAR_TURN, /* influence_turn */
+    NOC_NEAR_ID,   /* the volume's, whole */
+    NOC_NEAR_FIELDS
+};
 
-/* Starts zeroed, and is used again and again. */
+/* Volumes near a box. Starts zeroed, and is used again and again. */
 typedef struct noc_near {
-    NOC_ARRAY(noc_near_group) groups;
-    size_t count;
-    bool no_memory; /* for all of them */
+    float *data;        /* field k of volume i: k * room + i; the next 16 behind the last: root, id 0 */
+    size_t room, count; /* room: with 32 that may be written behind the last */
+    NOC_ARRAY(noc_influence_node) packs; /* boxes around 16 volumes each, and their largest roots */
+    bool no_memory;                      /* for all of them */
 } noc_near;
+/* Makes room for as many again, or the first. */
+bool noc_near_grow(noc_near *near) NOC_MUST_USE;
 
 /* struct near_query of core/influence_points.h */
 typedef struct noc_near_query {
@@ -166,7 +174,8 @@ typedef struct noc_found {
     NOC_ARRAY(uint32_t) ids;
     uint32_t pending[NOC_QUERY_BLOCKS]; /* scratch: points that have not asked yet, as bits */
     noc_near near[2];                   /* scratch: volumes near all points, near a group */
-    NOC_ARRAY(float) gives;             /* scratch: by volume near the group, lux; 0: does not hold it */
+    NOC_ARRAY(uint32_t) looked;         /* scratch: packs that a group looks at */
+    NOC_ARRAY(float) gives;             /* scratch: by volume of those, lux; 0: does not hold it */
     noc_influence_bins bins;            /* scratch */
     bool no_memory;                     /* for all that the tile found: it is less */
 } noc_found;

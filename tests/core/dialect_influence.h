@@ -41,7 +41,8 @@ FN void influence_draws(CTX u32 item, u32 key, surf s) {
 
 /* Words 0 and 1: how many volumes were added, a hash of them; from 16 on: bins. What a tile finds: from 2 on the
  * lengths of two lists, points that have not asked, a hash of which group they are in, how many lights were found, a
- * hash of them; from 256 on groups, from 1088 on two lists, then influence_turn of each, then what they give. */
+ * hash of them; from 256 on groups, from 1088 on two lists, then influence_turn of each, what they give, boxes of 16
+ * packs of each, packs looked at, and what is on its way. */
 #define LENGTH_WORDS 2u
 #define PENDING_WORDS 4u
 #define GROUP_OF_WORD 8u
@@ -53,6 +54,9 @@ FN void influence_draws(CTX u32 item, u32 key, surf s) {
 #define TURN_WORDS 1600u
 #define GIVES_WORDS 2112u
 #define DIALECT_VOLUMES 256u
+#define PACK_WORDS 2624u
+#define LOOKED_WORDS 2848u
+#define TURNED_WORDS 2864u
 
 FN1 u1 tile_bits(u1 item, u1 i) {
     u1 x = (item * 64u + i + 1u) * 0x9e3779b9u;
@@ -96,22 +100,48 @@ FN influence near_volumes_load(CTX u1 first, u1 end) {
     v.root = sel(i < KU(end), v.root, K(0.0f));
     return v;
 }
+FN void near_ask_ahead(CTX u1 first) {}
 FN void near_clear(CTX u1 list) {
     word_store(PASS LENGTH_WORDS + list, 0u);
     word_store(PASS 1u, list);
 }
 FN u1 near_count(CTX u1 list) { return word_load(PASS LENGTH_WORDS + list); }
-FN b1 near_add(CTX u1 list, u1 volume) {
+FN b1 near_add(CTX u1 list, u1 first, u1 bits, influence v, real turn) {
     u1 length = near_count(PASS list);
-    b1 room = length < DIALECT_VOLUMES;
-    if (room) {
-        word_store(PASS LIST_WORDS + DIALECT_VOLUMES * list + length, volume);
-        word_store(PASS LENGTH_WORDS + list, length + 1u);
-        word_store(PASS 1u, word_load(PASS 1u) * 31u + volume);
+    words_store(PASS TURNED_WORDS, bits_of_real(turn));
+    for (; bits != 0u && length < DIALECT_VOLUMES; bits = bits & (bits - 1u)) {
+        word_store(PASS LIST_WORDS + DIALECT_VOLUMES * list + length, first + low_bit(bits));
+        word_store(PASS TURN_WORDS + DIALECT_VOLUMES * list + length, word_load(PASS TURNED_WORDS + low_bit(bits)));
+        word_store(PASS 1u, word_load(PASS 1u) * 31u + first + low_bit(bits));
+        length++;
     }
-    return room;
+    word_store(PASS LENGTH_WORDS + list, length);
+    return bits == 0u;
 }
 FN b1 near_lost(CTX u1 list) { return false; }
+FN u1 pack_word(u1 list, u1 field, u1 pack) { return PACK_WORDS + 112u * list + 16u * field + pack; }
+FN void near_pack_store(CTX u1 list, u1 pack, f3 lo, f3 hi, f1 root) {
+    if (pack == 0u)
+        for (u1 i = 0u; i < 16u; i++)
+            word_store(PASS pack_word(list, 6u, i), 0u);
+    word_store(PASS pack_word(list, 0u, pack), bits_of_f1(lo.x));
+    word_store(PASS pack_word(list, 1u, pack), bits_of_f1(lo.y));
+    word_store(PASS pack_word(list, 2u, pack), bits_of_f1(lo.z));
+    word_store(PASS pack_word(list, 3u, pack), bits_of_f1(hi.x));
+    word_store(PASS pack_word(list, 4u, pack), bits_of_f1(hi.y));
+    word_store(PASS pack_word(list, 5u, pack), bits_of_f1(hi.z));
+    word_store(PASS pack_word(list, 6u, pack), bits_of_f1(root));
+}
+FN real pack_number(CTX u1 list, u1 field, u1 first) {
+    return real_of_bits(words_load(PASS pack_word(list, field, first)));
+}
+FN near_children near_packs_load(CTX u1 list, u1 first) {
+    near_children c;
+    c.lo = V3(pack_number(PASS list, 0u, first), pack_number(PASS list, 1u, first), pack_number(PASS list, 2u, first));
+    c.hi = V3(pack_number(PASS list, 3u, first), pack_number(PASS list, 4u, first), pack_number(PASS list, 5u, first));
+    c.root = pack_number(PASS list, 6u, first);
+    return c;
+}
 FN u1 near_id(CTX u1 list, u1 place) { return word_load(PASS LIST_WORDS + DIALECT_VOLUMES * list + place); }
 FN f1 near_lights(CTX u1 list, u1 place) { return 1.0f + F32(near_id(PASS list, place) & 1u); }
 FN u32 near_ids(CTX u1 list, u1 first) { return words_load(PASS LIST_WORDS + DIALECT_VOLUMES * list + first); }
@@ -123,17 +153,19 @@ FN influence near_load(CTX u1 list, u1 first) {
 FN real near_turn(CTX u1 list, u1 first) {
     return real_of_bits(words_load(PASS TURN_WORDS + DIALECT_VOLUMES * list + first));
 }
-FN void near_turn_store(CTX u1 list, u1 first, real turn) {
-    words_store(PASS TURN_WORDS + DIALECT_VOLUMES * list + first, bits_of_real(turn));
-}
 FN b1 gives_room(CTX u1 list) { return true; }
+FN void looked_store(CTX u1 i, u1 pack) { word_store(PASS LOOKED_WORDS + i, pack); }
+FN u1 looked_load(CTX u1 i) { return word_load(PASS LOOKED_WORDS + i); }
 FN void gives_store(CTX u1 first, real gives) { words_store(PASS GIVES_WORDS + first, bits_of_real(gives)); }
 FN real gives_load(CTX u1 first) { return real_of_bits(words_load(PASS GIVES_WORDS + first)); }
 FN f1 gives_at(CTX u1 place) { return f1_of_bits(word_load(PASS GIVES_WORDS + place)); }
 FN u1 found_next(CTX u1 group) { return word_load(PASS LIGHTS_WORD); }
-FN b1 found_add(CTX u1 volume) {
-    word_store(PASS LIGHTS_WORD, word_load(PASS LIGHTS_WORD) + 1u);
-    word_store(PASS LIGHTS_HASH_WORD, word_load(PASS LIGHTS_HASH_WORD) * 31u + volume);
+FN b1 found_add(CTX u1 list, u1 first, u1 bits) {
+    for (; bits != 0u; bits = bits & (bits - 1u)) {
+        u1 volume = near_id(PASS list, first + low_bit(bits));
+        word_store(PASS LIGHTS_WORD, word_load(PASS LIGHTS_WORD) + 1u);
+        word_store(PASS LIGHTS_HASH_WORD, word_load(PASS LIGHTS_HASH_WORD) * 31u + volume);
+    }
     return true;
 }
 

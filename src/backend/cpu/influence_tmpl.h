@@ -56,8 +56,11 @@ FN void group_store(CTX u1 group, near_query q, u1 from, u1 count) {
 
 FN b1 gives_room(CTX u1 list) {
     noc_found *f = ctx->at.volumes;
-    return array_reserve(&f->gives, f->near[list].groups.len * BLOCK);
+    size_t packs = f->near[list].count / BLOCK + 1;
+    return array_reserve(&f->looked, packs) && array_reserve(&f->gives, packs * BLOCK);
 }
+FN void looked_store(CTX u1 i, u1 pack) { ctx->at.volumes->looked.data[i] = pack; }
+FN u1 looked_load(CTX u1 i) { return ctx->at.volumes->looked.data[i]; }
 FN void gives_store(CTX u1 first, real gives) { rstore(ctx->at.volumes->gives.data + first, gives); }
 FN real gives_load(CTX u1 first) { return rload(ctx->at.volumes->gives.data + first); }
 FN f1 gives_at(CTX u1 place) { return ctx->at.volumes->gives.data[place]; }
@@ -66,14 +69,26 @@ FN u1 found_next(CTX u1 group) {
     (void)group;
     return (u1)ctx->at.volumes->ids.len;
 }
-FN b1 found_add(CTX u1 volume) {
+FN b1 found_add(CTX u1 list, u1 first, u1 bits) {
     const noc_influence *v = ctx->influence;
     noc_found *f = ctx->at.volumes;
-    uint32_t first = v->first ? v->first[volume] : volume, end = v->first ? v->first[volume + 1] : first + 1;
-    if (!array_reserve(&f->ids, f->ids.len + end - first))
-        return false;
-    for (uint32_t k = first; k < end; k++)
-        f->ids.data[f->ids.len++] = v->ids[k];
+    u32 volumes = near_ids(ctx, list, first);
+    if (!v->first) {
+        if (!array_reserve(&f->ids, f->ids.len + BLOCK))
+            return false;
+        u32 ids = word_gather(v->ids, selu(mload(bits, 0), volumes, KU(0u)));
+        lanes_pack(f->ids.data + f->ids.len, ids, lanes_of(bits));
+        f->ids.len += bit_count(bits);
+        return true;
+    }
+    uint32_t volume[LANES];
+    for (ustore(volume, volumes); bits; bits &= bits - 1) {
+        uint32_t begin = v->first[volume[low_bit(bits)]], end = v->first[volume[low_bit(bits)] + 1];
+        if (!array_reserve(&f->ids, f->ids.len + end - begin))
+            return false;
+        for (uint32_t k = begin; k < end; k++)
+            f->ids.data[f->ids.len++] = v->ids[k];
+    }
     return true;
 }
 
