@@ -205,13 +205,13 @@ static int work(bench *b) {
     bool interrupted = status == NOC_ERR_CANCELLED && cli_interrupted();
     if (status && !interrupted)
         return CLI_FAILURE;
-    if (args->json)
-        bench_json(b, !interrupted, stdout);
-    if (args->output && !write_json(b, !interrupted))
-        return CLI_FAILURE;
     bool any = false;
     for (int s = 0; s < BENCH_SECTIONS; s++)
         any = any || b->measured[s];
+    if (args->json)
+        bench_json(b, !interrupted, stdout);
+    if (args->output && (any || !interrupted) && !write_json(b, !interrupted))
+        return CLI_FAILURE;
     if (interrupted)
         cli_error(any ? "interrupted: tables that were not complete are left out"
                       : "interrupted: no table was complete");

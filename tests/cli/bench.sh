@@ -125,6 +125,16 @@ d = json.load(open("cut.json"))
 assert not d["complete"] and list(d["tables"]) == ["threads"] and d["tables"]["threads"][0]["frames"] == 1000' 2>why
 result $? "with what was complete" "$(tail -n 1 why)"
 ls | grep -q new$; test $? = 1; result $? "and nothing half-written"
+echo kept >kept.json
+env --default-signal=INT "$program" bench --only floor --size 320x180 --frames 1000 --time 0 -o kept.json \
+    >out 2>err </dev/null &
+pid=$!
+until grep -q '^Pictures' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
+kill -INT $pid
+wait $pid
+status=$?
+test $status = 130 && grep -q 'no table was complete' err && test "$(cat kept.json)" = kept && ! ls kept.json.* 2>why
+result $? "and leaves a file alone that it has nothing for"
 
 expect "a table that is not there" 2 '^nocturne: --only: no table "flor"; is it floor' bench --only flor
 expect "none at all" 2 'no table ""' bench --only floor,
