@@ -133,7 +133,7 @@ until grep -q '^Pictures' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
 kill -INT $pid
 wait $pid
 status=$?
-test $status = 130 && grep -q 'no table was complete' err && test "$(cat kept.json)" = kept && ! ls kept.json.* 2>why
+test $status = 130 && grep -q 'interrupted: ' err && test "$(cat kept.json)" = kept && ! ls kept.json.* 2>why
 result $? "and leaves a file alone that it has nothing for"
 
 expect "a table that is not there" 2 '^nocturne: --only: no table "flor"; is it floor' bench --only flor
