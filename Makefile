@@ -27,6 +27,7 @@ deps:
 	@tools/install-deps.sh build
 deps-check:
 	@tools/install-deps.sh check
+	@tools/vulkan-driver.sh
 
 build/build.ninja: | deps
 	@meson setup build --prefix $(abspath $(PREFIX)) >build.log 2>&1 || { cat build.log; rm -rf build build.log; exit 1; }
