@@ -19,6 +19,12 @@ icd() {
     done
     return 1
 }
+layer() {
+    for folder in /usr/share /usr/local/share /etc; do
+        [ -e "$folder/vulkan/explicit_layer.d/VkLayer_khronos_validation.json" ] && return 0
+    done
+    return 1
+}
 
 missing= reasons=
 # need PACKAGE REASON PROBE...: PACKAGE is Debian's name of it
@@ -55,6 +61,10 @@ need libwebsockets-dev "nocturne view, the viewer in a browser" module libwebsoc
 need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip
 need zlib1g-dev "gzipped city models" module zlib
+need libvulkan-dev "rendering on GPUs (Vulkan)" module vulkan
+need libvulkan-volk-dev "finds the Vulkan loader at run time" header volk.h
+need glslang-tools "compiles shaders" have glslangValidator
+need spirv-tools "validates shaders" have spirv-val
 fuzzer() {
     have clang || return 1
     for file in "$(clang -print-resource-dir)"/lib/linux/libclang_rt.fuzzer-*.a; do
@@ -74,9 +84,8 @@ if [ "$purpose" = check ] || [ "$purpose" = coverage ]; then
     need g++ "tests that the headers serve C++ too" cplusplus
     need libcmocka-dev "unit tests" module cmocka
     need clang-format "tests the layout of the sources" formatter
-    need glslang-tools "tests that the estimator compiles as GLSL" have glslangValidator
-    need libvulkan-dev "runs that GLSL in tests" module vulkan
-    need mesa-vulkan-drivers "a Vulkan device in software, for those tests" icd
+    need mesa-vulkan-drivers "a Vulkan device in software, for tests" icd
+    need vulkan-validationlayers "finds wrong use of Vulkan in tests" layer
     need chromium "drives the viewer's page in tests" browser
 fi
 [ -n "$missing" ] || exit 0
