@@ -2,9 +2,11 @@
  *
  * A machine gathers k neighbours and, for each pixel, calls reuse_begin, then reuse_target for each neighbour that is
  * asked, traces the rays that reuse_asks for, from that neighbour to the sample held, and calls reuse_end. Pairwise one
- * neighbour is asked, which reuse_partner names for each pixel; else all are. Includers supply FRAME and what they have
- * gathered:
+ * neighbour is asked, which reuse_partner names for each pixel; else all are. Neighbour i is the i-th draw, and k the
+ * number of draws, present or not: what a pixel gets depends on no other pixel. Includers supply FRAME and what they
+ * have gathered:
  *
+ *     neighbour_some(CTX i)     false only if no lane has it; then it is skipped, which changes no bit
  *     neighbour_on(CTX i)       there is one: it is on a surface like the pixel's
  *     neighbour_resv(CTX i)     its reservoir, of m = w = 0 where there is none
  *     neighbour_resv_of(CTX i)  the same, of a number that differs from pixel to pixel
@@ -30,6 +32,7 @@ struct combined {
 #ifndef CORE_GLSL
 typedef struct combined combined;
 #endif
+FN b1 neighbour_some(CTX int i);
 FN mask neighbour_on(CTX int i);
 FN reservoir neighbour_resv(CTX int i);
 FN surf neighbour_surf(CTX int i);
@@ -71,6 +74,8 @@ FN reservoir_builder reuse_begin(CTX surf s, reservoir own, u32 key, u32 dim, in
     EXACT real w_own = own.m * own.p * own.w;
     reservoir_builder st = builder_add(builder_empty(), own.light, own.u, own.v, own.p, w_own, own.m, K(0.0f), K(0.0f));
     for (int i = 0; i < k; i++) {
+        if (!neighbour_some(PASS i))
+            continue;
         reservoir q = neighbour_resv(PASS i);
         real p = reuse_offered(PASS s, q);
         EXACT real w = q.m * p * q.w;
@@ -82,16 +87,24 @@ FN reservoir_builder reuse_begin(CTX surf s, reservoir own, u32 key, u32 dim, in
 /* Number of neighbours that are asked. */
 FN int reuse_asked(CTX int k) { return FRAME.bias == BIAS_PAIRWISE && k > 1 ? 1 : k; }
 
+/* Sum of the neighbours' M. */
+FN real reuse_sum_m(CTX int k) {
+    real m_n = K(0.0f);
+    for (int i = 0; i < k; i++)
+        if (neighbour_some(PASS i))
+            m_n = m_n + neighbour_resv(PASS i).m;
+    return m_n;
+}
+
 /* Pairwise: the neighbour that is asked, drawn in proportion to M. */
 FN u32 reuse_partner(CTX u32 key, u32 dim, int k) {
     u32 partner = KU(0u);
-    real m_n = K(0.0f);
     if (k > 1) {
-        for (int i = 0; i < k; i++)
-            m_n = m_n + neighbour_resv(PASS i).m;
-        EXACT real at = reuse_partner_choice(key, dim) * m_n;
+        EXACT real at = reuse_partner_choice(key, dim) * reuse_sum_m(PASS k);
         real before = K(0.0f);
         for (int i = 0; i < k; i++) {
+            if (!neighbour_some(PASS i))
+                continue;
             real m = neighbour_resv(PASS i).m;
             partner = selu(and_(m > K(0.0f), before <= at), KU(U32(i)), partner);
             before = before + m;
@@ -136,7 +149,8 @@ FN real reuse_mass(reservoir q) {
 FN reservoir_builder reuse_offer_drawn(CTX surf s, real m_n, real m_c, u32 key, u32 dim, int k) {
     real total = K(0.0f);
     for (int i = 0; i < k; i++)
-        total = total + reuse_mass(neighbour_resv(PASS i));
+        if (neighbour_some(PASS i))
+            total = total + reuse_mass(neighbour_resv(PASS i));
     real inv = mis_scale(K(1.0f), m_n);
     EXACT real step = total * K(1.0f / F32(REUSE_DRAWS));
     EXACT real at = reuse_draws_start(key, dim) * step;
@@ -146,6 +160,8 @@ FN reservoir_builder reuse_offer_drawn(CTX surf s, real m_n, real m_c, u32 key, 
         real mass = K(0.0f);
         real before = K(0.0f);
         for (int i = 0; i < k; i++) {
+            if (!neighbour_some(PASS i))
+                continue;
             real of = reuse_mass(neighbour_resv(PASS i));
             mask here = and_(of > K(0.0f), before <= at);
             drawn = selu(here, KU(U32(i)), drawn);
@@ -161,16 +177,15 @@ FN reservoir_builder reuse_offer_drawn(CTX surf s, real m_n, real m_c, u32 key, 
     return st;
 }
 
-FN combined reuse_pairwise(CTX surf s, reservoir own, u32 key, u32 dim, int k) {
-    real m_n = K(0.0f);
-    for (int i = 0; i < k; i++)
-        m_n = m_n + neighbour_resv(PASS i).m;
+FN combined reuse_pairwise(CTX surf s, reservoir own, real m_n, u32 key, u32 dim, int k) {
     reservoir_builder st = builder_empty();
     if (k > REUSE_DRAWS) {
         st = reuse_offer_drawn(PASS s, m_n, own.m, key, dim, k);
     } else {
         real inv = mis_scale(K(1.0f), m_n);
         for (int i = 0; i < k; i++) {
+            if (!neighbour_some(PASS i))
+                continue;
             reservoir q = neighbour_resv(PASS i);
             EXACT real share = q.m * inv;
             st = reuse_offer(PASS st, s, q, share, m_n, own.m, K(1.0f), K(F32(i + 1)), reuse_choice(key, dim, i));
@@ -178,7 +193,7 @@ FN combined reuse_pairwise(CTX surf s, reservoir own, u32 key, u32 dim, int k) {
     }
     real m_c = K(1.0f);
     if (k > 0)
-        m_c = sel(m_n > K(0.0f), pair_canonical(K(1.0f), m_n, neighbour_answer(PASS 0), own.m, own.p), K(1.0f));
+        m_c = pair_canonical(K(1.0f), m_n, neighbour_answer(PASS 0), own.m, own.p);
     EXACT real m_all = m_n + own.m;
     EXACT real w_own = m_c * own.p * own.w;
     st = builder_add(st, own.light, own.u, own.v, own.p, w_own, m_all, K(0.0f), reuse_own_choice(key, dim));
@@ -197,6 +212,8 @@ FN combined reuse_weighed(CTX reservoir own, reservoir_builder held, int k) {
         EXACT real mine = own.m * held.p;
         all = mine;
         for (int i = 0; i < k; i++) {
+            if (!neighbour_some(PASS i))
+                continue;
             real p = neighbour_answer(PASS i);
             EXACT real sum = all + neighbour_resv(PASS i).m * p;
             all = sum;
@@ -209,10 +226,18 @@ FN combined reuse_weighed(CTX reservoir own, reservoir_builder held, int k) {
     return c;
 }
 
+/* The combination; the pixel's own reservoir as it is where no neighbour has M > 0. */
 FN combined reuse_end(CTX surf s, reservoir own, reservoir_builder held, u32 key, u32 dim, int k) {
+    real m_n = reuse_sum_m(PASS k);
+    mask some = m_n > K(0.0f);
+    combined c;
     if (FRAME.bias == BIAS_PAIRWISE)
-        return reuse_pairwise(PASS s, own, key, dim, k);
-    return reuse_weighed(PASS own, held, k);
+        c = reuse_pairwise(PASS s, own, m_n, key, dim, k);
+    else
+        c = reuse_weighed(PASS own, held, k);
+    c.r = reservoir_sel(some, c.r, own);
+    c.own = or_(not_(some), c.own);
+    return c;
 }
 
 #endif

@@ -56,6 +56,17 @@ FN reservoir reservoir_empty(void) {
     return r;
 }
 
+FN reservoir reservoir_sel(mask c, reservoir a, reservoir b) {
+    reservoir r;
+    r.light = selu(c, a.light, b.light);
+    r.u = sel(c, a.u, b.u);
+    r.v = sel(c, a.v, b.v);
+    r.w = sel(c, a.w, b.w);
+    r.m = sel(c, a.m, b.m);
+    r.p = sel(c, a.p, b.p);
+    return r;
+}
+
 /* Offers a sample of resampling weight w >= 0 that stands for m candidates; xi in [0, 1). */
 FN reservoir_builder builder_add(reservoir_builder s, u32 id, real u, real v, real p, real w, real m, real tag,
                                  real xi) {

@@ -249,7 +249,73 @@ static void tables_agree(void **state) {
     print_message("# %d tables, the widest %s\n", tables, all[tables - 1]->name);
 }
 
+/* Neighbours that random lanes of a block have, some of them none. */
+static void random_neighbours(combining *b) {
+    for (int i = 0; i < b->k; i++) {
+        neighbour *n = &b->n[i];
+        random_surface(&n->g);
+        random_reservoirs(&n->r);
+        n->lanes = bits() % 3 ? bits() & 0xffff : 0;
+        b->unoccluded[i] = bits() & 0xffff;
+    }
+}
+
+/* Keeps the neighbours of these lanes. */
+static void keep_lanes(combining *b, uint32_t lanes) {
+    for (int i = 0; i < b->k; i++) {
+        neighbour *n = &b->n[i];
+        n->lanes &= lanes;
+        for (int l = 0; l < BLOCK; l++)
+            if (!(n->lanes >> l & 1))
+                n->r.m[l] = n->r.w[l] = 0;
+    }
+}
+
+static void assert_same_lane(const rblock *a, const rblock *b, int l) {
+    assert_true(a->light[l] == b->light[l] && a->u[l] == b->u[l] && a->v[l] == b->v[l]);
+    assert_true(a->w[l] == b->w[l] && a->m[l] == b->m[l] && a->p[l] == b->p[l]);
+}
+
+/* Neighbours are numbered by their draw: what a pixel gets does not depend on whether other pixels of its block have
+ * them, and a pixel without any keeps its reservoir to the bit. */
+static void pixels_do_not_depend_on_their_block(void **state) {
+    (void)state;
+    const kernels *all[NOC_MAX_KERNELS];
+    int tables = noc_runnable_kernels(all), alone = 0;
+    static combining whole, one;
+    static world w;
+    static trace together, apart;
+    for (int round = 0; round < ROUNDS; round++) {
+        gblock g;
+        rblock own;
+        make_world(&w);
+        random_surface(&g);
+        random_reservoirs(&own);
+        whole = (combining){ .x = 4, .y = 8, .g = &g, .own = &own, .dim = 64, .k = 1 + round % 6 };
+        random_neighbours(&whole);
+        keep_lanes(&whole, 0xffff);
+        combine_all(all[round % tables], &w, &whole, &together);
+        for (int l = 0; l < BLOCK; l++) {
+            one = whole;
+            keep_lanes(&one, 1u << l);
+            combine_all(all[round % tables], &w, &one, &apart);
+            float m = 0;
+            for (int i = 0; i < one.k; i++)
+                m += one.n[i].r.m[l];
+            for (int bias = 0; bias < 3; bias++) {
+                assert_same_lane(&together.combined[bias], &apart.combined[bias], l);
+                assert_int_equal(together.visible[bias] >> l & 1, apart.visible[bias] >> l & 1);
+                if (m == 0)
+                    assert_same_lane(&together.combined[bias], &own, l);
+            }
+            alone += m == 0;
+        }
+    }
+    assert_true(alone > ROUNDS && alone < ROUNDS * (BLOCK - 1));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(tables_agree) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(tables_agree),
+                                        cmocka_unit_test(pixels_do_not_depend_on_their_block) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -66,17 +66,24 @@ FN frame_constants dialect_constants(uint32_t bias) {
     return f;
 }
 
-/* Neighbours of the item at hand. */
-FN mask neighbour_on(CTX int i) { return rng(dialect_key, KU(4000u + U32(i))) < K(0.8f); }
+/* Neighbours of the item at hand: often none. C skips those that no lane has, the shader skips none. */
+FN mask neighbour_there(u32 i) { return rng(dialect_key, KU(4000u) + i) < K(0.5f); }
+FN mask neighbour_on(CTX int i) { return neighbour_there(KU(U32(i))); }
+#if defined(CORE_GLSL)
+b1 neighbour_some(int i) { return true; }
+#else
+FN b1 neighbour_some(CTX int i) { return ANY(neighbour_on(PASS i)); }
+#endif
 FN reservoir neighbour_resv_of(CTX u32 i) {
     reservoir r;
     u32 key = hash_u32(dialect_key + KU(4100u) + i);
-    mask empty = rng(key, KU(0u)) < K(0.3f);
+    mask there = neighbour_there(i);
+    mask empty = or_(not_(there), rng(key, KU(0u)) < K(0.3f));
     r.light = scale_u32(rng_bits(key, KU(1u)), KU(KERNEL_LIGHTS));
     r.u = rng(key, KU(2u));
     r.v = rng(key, KU(3u));
     r.w = sel(empty, K(0.0f), rng(key, KU(4u)) * K(50.0f));
-    r.m = to_real(shr(rng_bits(key, KU(5u)), 26));
+    r.m = sel(there, to_real(shr(rng_bits(key, KU(5u)), 26)), K(0.0f));
     r.p = sel(empty, K(0.0f), rng(key, KU(6u)) * K(5.0f));
     return r;
 }

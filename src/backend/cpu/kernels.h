@@ -117,7 +117,7 @@ typedef struct combining {
     uint32_t visible;        /* lanes whose sample is known to be seen from its pixel */
     uint32_t dim;            /* DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */
     const frame_camera *eye; /* the neighbours' */
-    int k;                   /* neighbours */
+    int k;                   /* draws of neighbours, those with no lane, too */
     bool partners;           /* one of them is asked, another one for each lane; else all are */
     held_block held;
     float p_at[MAX_NEIGHBOURS][BLOCK]; /* its target there */
@@ -282,7 +282,7 @@ typedef struct kernels {
     uint32_t (*history_places)(const struct core_context *ctx, const gblock *g, uint32_t x[BLOCK], uint32_t y[BLOCK]);
     /* The 4x4 pixels from (x, y) on, which may lie outside the picture, as neighbours of the pixels of `here`: those of
      * the lanes `wanted` that are inside and on a surface like theirs. g, r: the picture's. n->g is left without its
-     * depth and light, and all of n but `lanes` where that is 0. */
+     * depth and light, and undefined where `lanes` is 0. */
     void (*neighbours)(const struct core_context *ctx, const gblock *g, const rblock *r, const gblock *here,
                        uint32_t wanted, int x, int y, neighbour *n);
     /* Segments from g to the samples. */

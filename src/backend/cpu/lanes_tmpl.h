@@ -218,17 +218,6 @@ FN void reservoir_store(rblock *b, int l, reservoir r) {
     rstore(b->p + l, r.p);
 }
 
-FN reservoir reservoir_sel(mask c, reservoir a, reservoir b) {
-    reservoir r;
-    r.light = selu(c, a.light, b.light);
-    r.u = sel(c, a.u, b.u);
-    r.v = sel(c, a.v, b.v);
-    r.w = sel(c, a.w, b.w);
-    r.m = sel(c, a.m, b.m);
-    r.p = sel(c, a.p, b.p);
-    return r;
-}
-
 /* Lanes whose sample has to be asked about. visible: lanes of which it is known to be seen. */
 FN uint32_t lanes_that_ask(const rblock *b, uint32_t visible) {
     uint32_t lanes = 0;

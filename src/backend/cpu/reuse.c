@@ -45,11 +45,9 @@ static void finish(const stage_run *run, combining *c) {
  * reservoirs were made with. */
 static void combine(stage_run *run, const struct core_context *there, noc_ray_world in, worker *w, int count) {
     bool rays = run->ctx.frame->flags & FRAME_BIAS_RAYS;
-    size_t at[TILE_BLOCKS * TILE_BLOCKS];
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
-        at[i] = c->at;
         run->k->reuse_begin(&run->ctx, c);
         if (run->ctx.frame->bias != BIAS_BIASED)
             run->k->reuse_ask(there, c);
@@ -71,6 +69,13 @@ static void combine(stage_run *run, const struct core_context *there, noc_ray_wo
             finish(run, c);
         }
     }
+}
+
+/* Of the tile's blocks, whether or not they have neighbours. */
+static void resolve(const stage_run *run, worker *w, const tile_block *blocks, int count) {
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];
+    for (int i = 0; i < count; i++)
+        at[i] = blocks[i].at;
     if (run->stage->resolve_visibility)
         noc_cpu_resolve(run, w, at, count);
 }
@@ -158,19 +163,22 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
     noc_ray_world in;
     struct core_context past = noc_cpu_previous(run->s, &run->ctx, &in);
     combine(run, &past, in, w, count);
+    resolve(run, w, blocks, n);
 }
 
-static void fetch_neighbours(const stage_run *run, combining *c) {
+/* False: no lane has any neighbour. */
+static bool fetch_neighbours(const stage_run *run, combining *c) {
     const gblock *g = run->s->b.g[run->frame->gbuffer];
     const rblock *r = run->s->b.r[run->stage->source];
     uint32_t surfaces = lanes_with_surface(c->g), key = neighbour_key(&run->ctx, (uint32_t)c->x, (uint32_t)c->y);
-    c->k = 0;
+    uint32_t some = 0;
+    c->k = (int)run->ctx.frame->neighbours;
     for (uint32_t i = 0; surfaces && i < run->ctx.frame->neighbours; i++) {
-        neighbour *n = &c->n[c->k];
         v3 offset = neighbour_offset(&run->ctx, key, c->dim + 3u * i);
-        run->k->neighbours(&run->ctx, g, r, c->g, surfaces, c->x + (int)offset.x, c->y + (int)offset.y, n);
-        c->k += n->lanes != 0;
+        run->k->neighbours(&run->ctx, g, r, c->g, surfaces, c->x + (int)offset.x, c->y + (int)offset.y, &c->n[i]);
+        some |= c->n[i].lanes;
     }
+    return some != 0;
 }
 
 void noc_cpu_spatial(stage_run *run, worker *w, tile t) {
@@ -184,8 +192,7 @@ void noc_cpu_spatial(stage_run *run, worker *w, tile t) {
         start(run, &blocks[i], source, c);
         c->dim = DIM_SPATIAL + 64u * (uint32_t)run->stage->round;
         c->eye = &run->ctx.frame->camera;
-        fetch_neighbours(run, c);
-        if (!c->k) {
+        if (!fetch_neighbours(run, c)) { /* core/combine.h leaves the reservoirs as they are */
             b->r[target][at] = b->r[source][at];
             b->visible[target][at] = b->visible[source][at];
             continue;
@@ -193,4 +200,5 @@ void noc_cpu_spatial(stage_run *run, worker *w, tile t) {
         count++;
     }
     combine(run, &run->ctx, NOC_RAYS_NOW, w, count);
+    resolve(run, w, blocks, n);
 }

@@ -5,6 +5,7 @@
 #include "core/combine.h"
 #include "core/neighbours.h"
 
+FN b1 neighbour_some(CTX int i) { return ctx->at.combining->n[i].lanes != 0; }
 FN mask neighbour_on(CTX int i) { return mload(ctx->at.combining->n[i].lanes, ctx->at.lane); }
 FN reservoir neighbour_resv(CTX int i) { return reservoir_load(&ctx->at.combining->n[i].r, ctx->at.lane); }
 FN real neighbour_answer(CTX int i) {
@@ -158,8 +159,10 @@ static void fetch_neighbours(const struct core_context *ctx, const gblock *g, co
             and_(and_(inside, mload(wanted, l)), receivers_alike(ctx, receiver_load(here, l), receiver_load(&n->g, l)));
         n->lanes |= mbits(on) << l;
     }
-    if (!n->lanes)
+    if (!n->lanes) {
+        memset(&n->r, 0, sizeof(n->r));
         return;
+    }
     if (ctx->texels)
         shifted_words(g->texel, gs, from, 1, n->g.texel);
     shifted_words(r->light, rs, from, (int)(rs / BLOCK), n->r.light); /* all of it */
@@ -241,6 +244,8 @@ static void combine_ask(const struct core_context *there, combining *b) {
             partner_store(ctx, b, partner);
         }
         for (int i = 0; i < asked; i++) {
+            if (!b->partners && !neighbour_some(ctx, i))
+                continue;
             mask on = b->partners ? real_of_bits(NEIGHBOUR_WORD(partner, r.m)) > K(0.0f) : neighbour_on(ctx, i);
             real p = reuse_target(ctx, i, and_(on, holds), held, li);
             rstore(b->p_at[i] + l, p);
