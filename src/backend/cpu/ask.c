@@ -6,7 +6,7 @@ noc_status noc_cpu_ask(void *state, const noc_render_params *p, bool tree, noc_a
     noc_light_sources sources = { 0 }; /* nothing of a tree is held */
     const noc_environment *e = s->scene->environment;
     noc_status status = noc_cpu_follow(s->world);
-    *out = (noc_asking){ .pool = s->pool, .ray_offset = s->world->ray_offset };
+    *out = (noc_asking){ .pool = s->pool, .ray_offset = s->world->scale.offset };
     if (status == NOC_OK && tree)
         status = noc_light_set_get(s->world->lights, NOC_CANDIDATES_LIGHT_BVH, p, &sources);
     out->tree = sources.tree;

@@ -5,6 +5,7 @@
 #include "backend/cpu/backend.h"
 #include "backend/cpu/kernels.h"
 #include "backend/cpu/tracer.h"
+#include "backend/parts.h"
 #include "light/learned.h"
 #include "light/set.h"
 
@@ -171,13 +172,10 @@ typedef struct cpu_world {
     noc_log *log;
     void *rays;           /* the tracer's structure */
     pthread_mutex_t lock; /* held while it follows the scene */
-    uint64_t shape, past; /* noc_cpu_shape of the scene that it knows, and of that before */
+    uint64_t shape, past; /* noc_scene_shape of the scene that it knows, and of that before */
     cpu_places places[2]; /* of instances: now, and then */
     double build_seconds;
-    size_t vertices;                 /* that ray_offset knows */
-    uint32_t made;                   /* and the last version of geometry that it knows */
-    float largest;                   /* coordinate of them, and of instances */
-    float ray_offset;                /* of shadow rays at least, m */
+    noc_ray_scale scale;
     noc_material_record no_material; /* stands in where the scene has none */
     noc_light_set *lights;
 } cpu_world;
@@ -250,8 +248,6 @@ typedef struct tile_points {
 } tile_points;
 
 /* device.c */
-/* What rays can hit is the same where this is. */
-static inline uint64_t noc_cpu_shape(const noc_scene_versions *v) { return v->geometry + v->instances; }
 /* Has the world follow what was edited; before anything of a frame. */
 noc_status noc_cpu_follow(cpu_world *world);
 size_t noc_cpu_rays_bytes(const cpu_world *world); /* of the ray tracing structure */

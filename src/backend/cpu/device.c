@@ -1,8 +1,6 @@
 /* A device's threads and ray tracer, and the worlds on it. */
 #include "backend/cpu/cpu.h"
 
-#include <math.h>
-
 void noc_cpu_device_destroy(void *state) {
     cpu_device *d = state;
     if (!d)
@@ -35,28 +33,6 @@ void noc_cpu_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, 
     noc_pool_run(((cpu_device *)device)->pool, items, fn, ctx);
 }
 
-/* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded
- * to 2^-24 of theirs. It looks at what is new only, and stays as it is where something is removed. */
-static void find_ray_offset(cpu_world *w) {
-    const noc_scene *s = w->scene;
-    for (size_t mesh = 0; mesh < s->meshes.len; mesh++) {
-        const noc_scene_mesh *m = &s->meshes.data[mesh];
-        if ((m->first_vertex >= w->vertices || m->made > w->made) && !m->model && !noc_mesh_closes(s, m))
-            for (size_t i = 3 * (size_t)s->meshes.data[mesh].first_vertex; i < 3 * noc_mesh_end_vertex(s, mesh); i++)
-                w->largest = NOC_MAX(w->largest, fabsf(s->positions.data[i]));
-    }
-    for (size_t i = 0; i < s->instances.len; i++) {
-        double box[2][3] = { { 0 } };
-        if (s->instances.data[i].model)
-            noc_join_instance_bounds(s, &s->instances.data[i], box[0], box[1]);
-        for (int k = 0; k < 6; k++)
-            w->largest = NOC_MAX(w->largest, fabsf((float)box[k / 3][k % 3]));
-    }
-    w->vertices = s->positions.len / 3;
-    w->made = (uint32_t)s->versions.geometry;
-    w->ray_offset = NOC_MIN(w->largest * 0x1p-19f, 1e-4f);
-}
-
 static bool copy_places(const noc_scene *scene, cpu_places *to) {
     if (!array_reserve(to, scene->instances.len))
         return false;
@@ -70,7 +46,7 @@ static bool copy_places(const noc_scene *scene, cpu_places *to) {
 }
 
 static noc_status follow(cpu_world *w) {
-    uint64_t shape = noc_cpu_shape(&w->scene->versions);
+    uint64_t shape = noc_scene_shape(&w->scene->versions);
     if (w->shape == shape)
         return NOC_OK;
     if (!array_reserve(&w->places[1], w->scene->instances.len))
@@ -83,7 +59,7 @@ static noc_status follow(cpu_world *w) {
     w->places[1] = then;
     w->past = w->shape;
     w->shape = shape;
-    find_ray_offset(w);
+    noc_ray_scale_follow(w->scene, &w->scale);
     return copy_places(w->scene, &w->places[0]) ? NOC_OK : NOC_ERR_MEMORY; /* there is room */
 }
 
@@ -115,8 +91,8 @@ noc_status noc_cpu_world_create(void *device, const noc_scene *scene, void **sta
         return noc_no_memory(d->log, "world");
     *w = (cpu_world){ .device = d, .scene = scene, .log = d->log };
     pthread_mutex_init(&w->lock, NULL);
-    w->shape = w->past = noc_cpu_shape(&scene->versions);
-    find_ray_offset(w);
+    w->shape = w->past = noc_scene_shape(&scene->versions);
+    noc_ray_scale_follow(w->scene, &w->scale);
     noc_status status = d->tracer->build(d->rays, scene, d->log, &w->rays);
     if (status == NOC_OK && !copy_places(scene, &w->places[0]))
         status = noc_no_memory(d->log, "world");

@@ -41,7 +41,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .influence = from->influence,
                                   .environment = scene->environment,
                                   .map_light = s->map_light,
-                                  .ray_offset = s->world->ray_offset };
+                                  .ray_offset = s->world->scale.offset };
 }
 
 /* What the passes of all stages find ready; the scene does not change until the frame is through. */

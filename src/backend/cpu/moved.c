@@ -39,7 +39,7 @@ noc_status noc_cpu_begin_past(cpu_view *s, const noc_plan *plan) {
         return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the previous frame's %zu lights",
                          s->scene->lights.len);
     s->past_lost = (!same_lights(now, then) && !s->past_filled) || now->materials != then->materials ||
-                   (noc_cpu_shape(now) != noc_cpu_shape(then) && s->world->past != noc_cpu_shape(then));
+                   (noc_scene_shape(now) != noc_scene_shape(then) && s->world->past != noc_scene_shape(then));
     return NOC_OK;
 }
 
@@ -63,7 +63,7 @@ struct core_context noc_cpu_previous(const cpu_view *s, const struct core_contex
     struct core_context past = *now;
     if (s->past_filled && !same_lights(&s->seen, &s->scene->versions))
         past.lights = s->previous_lights;
-    *in = noc_cpu_shape(&s->seen) == noc_cpu_shape(&s->scene->versions) ? NOC_RAYS_NOW : NOC_RAYS_PAST;
+    *in = noc_scene_shape(&s->seen) == noc_scene_shape(&s->scene->versions) ? NOC_RAYS_NOW : NOC_RAYS_PAST;
     return past;
 }
 
@@ -105,7 +105,7 @@ static bool was_there(const cpu_world *w, uint32_t i) {
 
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved) {
     const cpu_world *w = s->world;
-    if (!s->b.instance || noc_cpu_shape(&s->seen) == w->shape)
+    if (!s->b.instance || noc_scene_shape(&s->seen) == w->shape)
         return g;
     *moved = *g;
     for (int l = 0; l < BLOCK; l++) {
@@ -118,7 +118,7 @@ const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, 
 
 uint32_t noc_cpu_known_before(const cpu_view *s, size_t at) {
     const cpu_world *w = s->world;
-    uint64_t then = noc_cpu_shape(&s->seen);
+    uint64_t then = noc_scene_shape(&s->seen);
     uint32_t known = 0;
     if (!s->b.instance || then == w->shape)
         return 0xffff;

@@ -4,6 +4,7 @@
 
 #include "backend/cpu/tracer.h"
 #include "backend/embree/rt.h"
+#include "backend/parts.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -19,12 +20,10 @@ typedef struct embree_device {
     embree_structure *current; /* that one: Embree tells errors and memory a device, not a scene */
 } embree_device;
 
-/* Meshes that are built together: those of the world from first_mesh on, or those of a model. */
 typedef struct embree_part {
+    noc_part of;
     RTCScene rtc;
     NOC_ARRAY(uint32_t) first; /* of each geometry of rtc, its first triangle in the scene */
-    size_t first_mesh, end_mesh;
-    size_t meshes, triangles, newest; /* not removed; the greatest `made` of them */
     int holders;
 } embree_part;
 

@@ -84,30 +84,15 @@ static bool attach_triangles(embree_structure *s, embree_part *part, size_t firs
     return !s->failed;
 }
 
-static bool belongs(const noc_scene *scene, const noc_scene_mesh *m, uint32_t model) {
-    return !m->removed && m->model == model && !noc_mesh_closes(scene, m);
-}
-
-/* What rays meet of a part now. */
-static void count_part(const noc_scene *scene, uint32_t model, embree_part *part) {
-    part->meshes = part->triangles = part->newest = 0;
-    for (size_t i = part->first_mesh; i < part->end_mesh; i++)
-        if (belongs(scene, &scene->meshes.data[i], model)) {
-            part->meshes++;
-            part->newest = NOC_MAX(part->newest, scene->meshes.data[i].made);
-            part->triangles += scene->meshes.data[i].triangle_count;
-        }
-}
-
 /* A geometry for each run of triangles without a gap. */
 static bool build_part(embree_structure *s, uint32_t model, embree_part *part) {
     const noc_scene *scene = s->scene;
     size_t first = 0, end = 0;
     if (!(part->rtc = new_scene(s)))
         return false;
-    for (size_t i = part->first_mesh; i < part->end_mesh; i++) {
+    for (size_t i = part->of.first_mesh; i < part->of.end_mesh; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
-        if (!belongs(scene, m, model))
+        if (!noc_part_has(scene, m, model))
             continue;
         if (m->first_triangle != end) {
             if (!attach_triangles(s, part, first, end - first))
@@ -129,59 +114,46 @@ static embree_part *make_part(embree_structure *s, uint32_t model, size_t first,
         no_memory(s);
         return NULL;
     }
-    part->first_mesh = first;
-    part->end_mesh = end;
+    part->of = (noc_part){ .first_mesh = first, .end_mesh = end };
     part->holders = 1;
-    count_part(s->scene, model, part);
+    noc_part_count(s->scene, model, &part->of);
     if (build_part(s, model, part))
         return part;
     let_go(part);
     return NULL;
 }
 
-/* Where the world's parts are to begin and end: those of before, what is new, the last ones joined while one is not
- * twice as large as the next. A part that has to be built has no structure yet. Returns how many there are. */
-static size_t plan(const embree_structure *s, embree_part *parts) {
-    size_t n = 0, end = 0;
-    for (; n < s->world.len; n++) {
-        const embree_part *have = s->world.data[n];
-        parts[n] = (embree_part){ .rtc = have->rtc, .first_mesh = have->first_mesh, .end_mesh = have->end_mesh };
-        count_part(s->scene, 0, &parts[n]);
-        if (parts[n].meshes != have->meshes || parts[n].newest != have->newest)
-            parts[n].rtc = NULL;
-        end = have->end_mesh;
+/* Plans the world's parts; where only instances have moved they stay. */
+static size_t plan_world(const embree_structure *s, noc_part *planned, bool *keep) {
+    size_t count = s->world.len;
+    for (size_t i = 0; i < count; i++) {
+        planned[count + 1 + i] = s->world.data[i]->of;
+        keep[i] = true;
     }
-    parts[n] = (embree_part){ .first_mesh = end, .end_mesh = s->scene->meshes.len };
-    count_part(s->scene, 0, &parts[n]);
-    n += parts[n].triangles > 0 || !n;
-    for (; n > 1 && 2 * parts[n - 1].triangles >= parts[n - 2].triangles; n--) {
-        parts[n - 2].end_mesh = parts[n - 1].end_mesh;
-        parts[n - 2].triangles += parts[n - 1].triangles;
-        parts[n - 2].rtc = NULL;
-    }
-    return n;
+    if (count && s->geometry == s->scene->versions.geometry)
+        return count;
+    return noc_parts_plan(s->scene, planned + count + 1, count, planned, keep);
 }
 
 /* The world's parts as they are now: those that have not changed are held. */
 static bool make_world(embree_structure *s, embree_parts *out) {
     size_t count = 0;
-    bool same = s->world.len && s->geometry == s->scene->versions.geometry; /* only instances have moved */
-    embree_part *planned = noc_calloc(s->world.len + 1, sizeof(*planned));
-    bool ok = planned && array_reserve(out, s->world.len + 1);
-    if (!ok)
-        no_memory(s);
-    else if (same)
-        count = s->world.len;
+    noc_part *planned = noc_calloc(2 * s->world.len + 1, sizeof(*planned));
+    bool *keep = noc_calloc(s->world.len + 1, sizeof(*keep));
+    bool ok = planned && keep && array_reserve(out, s->world.len + 1);
+    if (ok)
+        count = plan_world(s, planned, keep);
     else
-        count = plan(s, planned);
+        no_memory(s);
     for (size_t i = 0; ok && i < count; i++) {
-        embree_part *part = same || planned[i].rtc ? held(s->world.data[i])
-                                                   : make_part(s, 0, planned[i].first_mesh, planned[i].end_mesh);
+        embree_part *part =
+            keep[i] ? held(s->world.data[i]) : make_part(s, 0, planned[i].first_mesh, planned[i].end_mesh);
         ok = part != NULL;
         if (ok)
             out->data[out->len++] = part;
     }
     free(planned);
+    free(keep);
     return ok;
 }
 
@@ -197,7 +169,7 @@ static bool add_above(embree_structure *s, embree_generation *g, embree_part *pa
                       const float transform[12]) {
     if (!part)
         return false;
-    if (!part->triangles)
+    if (!part->of.triangles)
         return true;
     if (!array_push(&g->above, (embree_above){ part, instance }))
         return no_memory(s);
