@@ -81,7 +81,7 @@ typedef struct noc_backend {
      * it as it was. */
     noc_status (*accumulate)(void *view, const noc_frame *frame);
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
-    void (*read)(void *view, noc_image *image);
+    noc_status (*read)(void *view, noc_image *image);
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none).
      * False where it kept none. */
     bool (*aov)(void *view, noc_aov aov, float *value);
@@ -106,7 +106,7 @@ typedef struct noc_backend {
     noc_status (*replay)(void *view, noc_trace_floor *floor);
 } noc_backend;
 
-extern const noc_backend noc_backend_embree;
+extern const noc_backend noc_backend_embree, noc_backend_vulkan;
 
 /* frame.c */
 /* Everything of a camera that can be wrong, as one reported error. */

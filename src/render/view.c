@@ -200,7 +200,11 @@ noc_image *noc_view_image(noc_view *v) {
         noc_error(v->log, NOC_ERR_MEMORY, "render: no memory for the picture's emitter mask");
         return NULL;
     }
-    v->backend->read(v->state, image);
+    if (v->backend->read(v->state, image) != NOC_OK) {
+        free(wide);
+        noc_image_destroy(image);
+        return NULL;
+    }
     /* grown by one pixel, along rows and then along columns */
     for (size_t i = 0; i < n; i++) {
         int x = (int)(i % (size_t)image->width);

@@ -122,7 +122,7 @@ noc_status noc_cpu_view_resize(void *state, int width, int height, int sets) {
 
 size_t noc_cpu_bytes_a_pixel(int sets, uint32_t aovs) { return bytes_a_block(sets) / BLOCK + noc_cpu_aov_bytes(aovs); }
 
-void noc_cpu_read(void *state, noc_image *image) {
+noc_status noc_cpu_read(void *state, noc_image *image) {
     const frame_buffers *b = &((cpu_view *)state)->b;
     for (int y = 0; y < b->height; y++)
         for (int x = 0; x < b->width; x++) {
@@ -135,6 +135,7 @@ void noc_cpu_read(void *state, noc_image *image) {
             if (image->coverage)
                 noc_cpu_read_coverage(b, at, l, image->coverage + 4 * to);
         }
+    return NOC_OK;
 }
 
 void noc_cpu_stats(void *state, noc_frame_stats *out) {
