@@ -33,6 +33,7 @@ typedef struct frame_camera frame_camera;
 #define FRAME_MATTE 64u       /* surfaces without gloss */
 
 #define MAX_NEIGHBOURS 16
+#define SKY_RAYS 4          /* of a pixel that nothing but the sky lights */
 #define REFERENCE_CHUNK 32u /* lights that the reference method sums at once */
 
 /* How reservoirs are combined: core/reuse.h. */

@@ -9,7 +9,6 @@
 #include "core/shadow.h"
 #include "core/sky.h"
 
-#define SKY_RAYS 4     /* of a pixel that nothing but the sky lights */
 #define SKY_REACH 1e7f /* m: further than any scene */
 #define SKY_REACH_BACK 1e-7f
 

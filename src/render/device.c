@@ -1,6 +1,12 @@
+#include "noc_config.h"
 #include "render/device.h"
 
-static const noc_backend *const backends[] = { &noc_backend_embree };
+static const noc_backend *const backends[] = {
+    &noc_backend_embree,
+#if NOC_HAVE_VULKAN
+    &noc_backend_vulkan,
+#endif
+};
 
 static const noc_backend *find_backend(const char *name, noc_log *log) {
     for (size_t i = 0; i < NOC_COUNT(backends); i++)

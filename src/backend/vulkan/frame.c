@@ -1,0 +1,344 @@
+/* A frame as one command buffer: stages are recorded as their steps (schedule.h), and the frame is submitted when it is
+ * complete. A frame that is dropped before that leaves nothing behind but what followed the scene. Two frames of a view
+ * may be in flight; figures are those of the last finished one. */
+#include "backend/vulkan/schedule.h"
+#include "backend/vulkan/vulkan.h"
+
+enum { GROUP = 64 }; /* invocations of a work group over pixels: four blocks in a row */
+
+/* ---- flights ---- */
+
+static void take_times(vk_view *v, vk_flight *f) {
+    uint64_t times[VK_STEPS + 1];
+    if (!f->times_count ||
+        vkGetQueryPoolResults(v->device->device, f->times, 0, (uint32_t)f->times_count + 1, sizeof(times), times,
+                              sizeof(*times), VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+        return;
+    for (int i = 0; i < f->times_count; i++)
+        if (f->timed[i] < NOC_PASS_COUNT)
+            v->stats.pass_seconds[f->timed[i]] +=
+                (double)((times[i + 1] - times[i]) & v->device->tick_mask) * v->device->tick;
+}
+
+static void take_counts(vk_view *v, const vk_flight *f) {
+    const uint32_t(*counts)[VK_COUNTERS] = f->counts.mapped;
+    uint64_t sums[VK_COUNT_KINDS] = { 0 };
+    for (int kind = 0; kind < VK_COUNT_KINDS; kind++)
+        for (int i = 0; i < VK_COUNTERS; i++)
+            sums[kind] += counts[kind][i];
+    v->stats.rays_shadow += sums[VK_COUNT_RAYS];
+    v->stats.dropped += sums[VK_COUNT_DROPPED];
+}
+
+/* Waits for a frame, and adds up what it counted. */
+static noc_status finish(vk_view *v, vk_flight *f) {
+    if (!f->pending)
+        return NOC_OK;
+    f->pending = false;
+    VkResult result = vkWaitForFences(v->device->device, 1, &f->fence, VK_TRUE, UINT64_MAX);
+    if (result != VK_SUCCESS)
+        return noc_vk_failed(v->device, result, "rendering");
+    take_times(v, f);
+    take_counts(v, f);
+    return NOC_OK;
+}
+
+noc_status noc_vk_finish_flights(vk_view *v) {
+    noc_status status = NOC_OK;
+    for (int i = 0; i < VK_FRAMES; i++) { /* the older one first */
+        noc_status one = finish(v, &v->flights[(v->flight + i) % VK_FRAMES]);
+        status = status == NOC_OK ? one : status;
+    }
+    return status;
+}
+
+/* ---- recording ---- */
+
+/* The addresses that are the same for all steps of a frame. */
+static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
+    const vk_world *w = v->world;
+    const vk_picture *b = &v->b;
+    bool all = frame->accumulated == 0;
+    return (vk_binding){
+        .frame = v->flights[v->flight].constants.address,
+        .lights = w->lights.buffer.address,
+        .past_lights = w->lights.buffer.address,
+        .materials = w->materials.buffer.address,
+        .profiles = w->profiles.buffer.address,
+        .texels = w->texels.buffer.address,
+        .indices = w->indices.buffer.address,
+        .positions = w->positions.buffer.address,
+        .triangle_material = w->triangle_material.buffer.address,
+        .triangle_light = w->triangle_light.buffer.address,
+        .image_places = w->image_places.buffer.address,
+        .image_corners = w->image_corners.buffer.address,
+        .instances = w->instances.buffer.address,
+        .instance_lights = w->instance_lights.buffer.address,
+        .entries = w->structure.entries.address,
+        .alias = w->alias.buffer.address,
+        .tree = w->tree.buffer.address,
+        .environment = w->environment.buffer.address,
+        .backdrop = w->backdrop.buffer.address,
+        .environment_slots = w->environment_slots.buffer.address,
+        .environment_sines = w->environment_sines.buffer.address,
+        .surfaces = b->surfaces[frame->gbuffer].address,
+        .previous = b->surfaces[frame->previous_gbuffer].address,
+        .instance = b->instance.address,
+        .colour = b->colour.address,
+        .picture = b->picture.address,
+        .coverage = b->coverage.address,
+        .rays = b->rays.address,
+        .answers = b->answers.address,
+        .hits = b->hits.address,
+        .samples = v->samples.address,
+        .weighed = v->weighed.address,
+        .counters = v->counters.address,
+        .light_count = (uint32_t)v->scene->lights.len,
+        .slots = b->blocks_x * b->blocks_y * BLOCK,
+        .blocks_y = b->blocks_y,
+        .draws = (uint32_t)frame->plan->candidate_count,
+        .subsets = v->subsets,
+        .alias_count = v->sources.alias ? v->sources.alias->count : 0,
+        .fresh = all,
+        .share = all ? 1 : (float)(1.0 / (double)(frame->accumulated + 1)),
+        .ray_offset = w->scale.offset,
+    };
+}
+
+static void mark_time(vk_view *v, noc_pass pass) {
+    vk_flight *f = &v->flights[v->flight];
+    if (!v->device->tick_mask || f->times_count >= VK_STEPS)
+        return;
+    f->timed[f->times_count++] = pass;
+    vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, (uint32_t)f->times_count);
+}
+
+static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
+    const vk_picture *b = &v->b;
+    VkCommandBuffer commands = v->flights[v->flight].commands;
+    static const VkStridedDeviceAddressRegionKHR none = { 0 };
+    switch (step->domain) {
+    case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, b->blocks_y, 1); break;
+    case VK_DOMAIN_SUBSETS: vkCmdDispatch(commands, v->subsets, 1, 1); break;
+    case VK_DOMAIN_RAYS:
+        vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, b->blocks_y,
+                          (uint32_t)step->slots);
+        break;
+    }
+}
+
+static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding *common) {
+    vk_flight *f = &v->flights[v->flight];
+    const vk_structure *s = &v->world->structure;
+    const vk_pipeline *p;
+    if (f->steps == VK_STEPS)
+        return noc_error(v->log, NOC_ERR_UNSUPPORTED, "vulkan: a frame of more than %d steps", VK_STEPS);
+    noc_status status = noc_vk_pipeline(v->device, step->shader, &p);
+    if (status != NOC_OK)
+        return status;
+    VkDeviceSize at = VK_CONSTANTS_BYTES + (VkDeviceSize)f->steps++ * sizeof(vk_binding);
+    vk_binding *b = (vk_binding *)(void *)((char *)f->constants.mapped + at);
+    *b = *common;
+    b->source = v->b.reservoirs[step->source].address;
+    b->target = v->b.reservoirs[step->target].address;
+    b->source_visible = v->b.visible[step->source].address;
+    b->target_visible = v->b.visible[step->target].address;
+    b->dimension = step->dimension;
+    b->first = step->first;
+    bool traces = step->domain == VK_DOMAIN_RAYS;
+    VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
+    VkDeviceAddress address = f->constants.address + at;
+    if (step->wait)
+        noc_vk_barrier(f->commands);
+    vkCmdBindPipeline(f->commands, point, p->pipeline);
+    if (traces)
+        vkCmdBindDescriptorSets(f->commands, point, v->device->layout, 0, 1,
+                                &s->tlas[step->past ? 1 - s->now : s->now].set, 0, NULL);
+    vkCmdPushConstants(f->commands, v->device->layout, VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR, 0,
+                       sizeof(address), &address);
+    dispatch(v, step, p);
+    return NOC_OK;
+}
+
+static noc_status record(vk_view *v, const noc_frame *frame, vk_step *steps, int count) {
+    vk_binding common = common_binding(v, frame);
+    noc_status status = NOC_OK;
+    for (int i = 0; i < count && status == NOC_OK; i++) {
+        noc_vk_find_wait(&v->hazards, &steps[i]);
+        status = record_step(v, &steps[i], &common);
+        if (i + 1 == count || steps[i + 1].pass != steps[i].pass)
+            mark_time(v, steps[i].pass);
+    }
+    return status;
+}
+
+static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
+    return (vk_facts){ .constants = &frame->constants,
+                       .history = frame->history,
+                       .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
+}
+
+/* ---- a frame ---- */
+
+static noc_status refuse(const vk_view *v, const noc_frame *frame) {
+    const noc_render_params *p = frame->params;
+    if (p->aovs)
+        return noc_error(v->log, NOC_ERR_UNSUPPORTED, "vulkan: no views (aovs) on this backend yet: use embree");
+    if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_LISTS)
+        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
+                         "vulkan: no candidates \"lists\" on this backend yet (there are uniform and power)");
+    if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_INFLUENCE)
+        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
+                         "vulkan: no candidates \"influence\" on this backend yet (there are uniform and power)");
+    return NOC_OK;
+}
+
+/* What the frame needs of the world and of the view, before anything is recorded. */
+static noc_status prepare(vk_view *v, const noc_frame *frame) {
+    vk_facts facts = facts_of(v, frame);
+    noc_status status = refuse(v, frame);
+    if (status == NOC_OK)
+        status = finish(v, &v->flights[v->flight]);
+    if (status == NOC_OK)
+        status = noc_vk_world_follow(v->world);
+    if (status == NOC_OK && frame->plan->draws)
+        status = noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
+    v->map_light = NULL;
+    if (status == NOC_OK && frame->constants.flags & FRAME_MAP_LIGHTS)
+        status = noc_light_set_map(v->world->lights_set, &v->map_light);
+    if (status == NOC_OK)
+        status = noc_vk_world_fill_sources(v->world, &v->sources, v->map_light);
+    return status == NOC_OK ? noc_vk_view_fit(v, noc_vk_schedule_slots(frame->plan, &facts)) : status;
+}
+
+static noc_status begin(vk_view *v, const noc_frame *frame) {
+    vk_flight *f = &v->flights[v->flight];
+    VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT };
+    noc_status status = prepare(v, frame);
+    if (status != NOC_OK)
+        return status;
+    VkResult result = vkBeginCommandBuffer(f->commands, &info);
+    if (result != VK_SUCCESS)
+        return noc_vk_failed(v->device, result, "recording a frame");
+    memcpy(f->constants.mapped, &frame->constants, sizeof(frame->constants));
+    f->steps = f->times_count = 0;
+    v->hazards = (vk_hazards){ 0 };
+    vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
+    noc_vk_barrier(f->commands);
+    if (v->device->tick_mask) {
+        vkCmdResetQueryPool(f->commands, f->times, 0, VK_STEPS + 1);
+        vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, 0);
+    }
+    return NOC_OK;
+}
+
+/* Drops the frame that is being recorded. */
+static noc_status drop(vk_view *v, noc_status status) {
+    v->open = false;
+    pthread_mutex_unlock(&v->device->lock);
+    return status;
+}
+
+noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
+                        double from, double to) {
+    vk_view *v = view;
+    vk_step steps[VK_STAGE_STEPS];
+    noc_status status = NOC_OK;
+    (void)to;
+    if (stage == &frame->plan->stages[0]) {
+        pthread_mutex_lock(&v->device->lock);
+        v->open = true;
+        status = begin(v, frame);
+    }
+    if (status == NOC_OK && progress && progress->update && !progress->update(progress->user, "rendering", from))
+        status = NOC_ERR_CANCELLED;
+    if (status == NOC_OK) {
+        vk_facts facts = facts_of(v, frame);
+        status = record(v, frame, steps, noc_vk_schedule(frame->plan, stage, &facts, steps));
+    }
+    return status == NOC_OK ? status : drop(v, status);
+}
+
+static noc_status submit(vk_view *v) {
+    vk_device *d = v->device;
+    vk_flight *f = &v->flights[v->flight];
+    VkBufferCopy copy = { .size = f->counts.bytes };
+    noc_vk_barrier(f->commands);
+    vkCmdCopyBuffer(f->commands, v->counters.buffer, f->counts.buffer, 1, &copy);
+    noc_vk_barrier(f->commands);
+    VkSubmitInfo info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                          .commandBufferCount = 1,
+                          .pCommandBuffers = &f->commands };
+    VkResult result = vkEndCommandBuffer(f->commands);
+    if (result == VK_SUCCESS)
+        result = vkResetFences(d->device, 1, &f->fence);
+    if (result == VK_SUCCESS)
+        result = vkQueueSubmit(d->queue, 1, &info, f->fence);
+    if (result != VK_SUCCESS)
+        return noc_vk_failed(d, result, "rendering");
+    f->pending = true;
+    v->flight = (v->flight + 1) % VK_FRAMES;
+    return NOC_OK;
+}
+
+noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
+    vk_view *v = view;
+    vk_step steps[VK_STAGE_STEPS];
+    vk_facts facts = facts_of(v, frame);
+    noc_status status = record(v, frame, steps, noc_vk_schedule_mean(&facts, steps));
+    if (status == NOC_OK)
+        status = submit(v);
+    if (status == NOC_OK) {
+        v->coverage_frames = frame->accumulated + 1;
+        v->stats.rays_primary +=
+            noc_stage_has(&frame->plan->stages[0], NOC_PASS_PRIMARY) ? (uint64_t)v->b.width * (uint64_t)v->b.height : 0;
+    }
+    return drop(v, status);
+}
+
+void noc_vk_stats(void *view, noc_frame_stats *out) {
+    vk_view *v = view;
+    const vk_device *d = v->device;
+    for (int i = 0; i < NOC_PASS_COUNT; i++)
+        out->pass_seconds[i] += v->stats.pass_seconds[i];
+    out->rays_primary += v->stats.rays_primary;
+    out->rays_shadow += v->stats.rays_shadow;
+    out->dropped += v->stats.dropped;
+    v->stats = (noc_frame_stats){ 0 };
+    out->build_seconds = v->world->build_seconds;
+    out->picture_bytes = v->b.bytes;
+    out->structure_bytes = noc_vk_structure_bytes(v->world);
+    out->memory_bytes = d->bytes;
+    out->path = d->path;
+}
+
+/* ---- what this backend does not do yet ---- */
+
+bool noc_vk_read_aov(void *view, noc_aov aov, float *value) {
+    (void)view;
+    (void)aov;
+    (void)value;
+    return false;
+}
+
+void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows) {
+    (void)view;
+    (void)camera;
+    (void)rows;
+}
+
+void noc_vk_light_stats(void *view, noc_light_stats *stats) {
+    const vk_view *v = view;
+    *stats = (noc_light_stats){ .lights = v->scene->lights.len };
+}
+
+void noc_vk_record(void *view, bool on) {
+    (void)view;
+    (void)on;
+}
+
+noc_status noc_vk_replay(void *view, noc_trace_floor *floor) {
+    (void)floor;
+    return noc_error(((vk_view *)view)->log, NOC_ERR_UNSUPPORTED, "vulkan: no trace floor on this backend yet");
+}

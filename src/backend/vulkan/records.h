@@ -1,0 +1,98 @@
+/* What the host and the shaders of the Vulkan backend both know: records in buffers, and the record of addresses that
+ * each dispatch gets. All of them have scalar layout: 4-byte scalars and 8-byte addresses without gaps. */
+#ifndef NOC_VULKAN_RECORDS_H
+#define NOC_VULKAN_RECORDS_H
+
+#include "core/blocks.h"
+#include "core/frame.h"
+#include "core/records.h"
+
+/* An instance of a model, and how it was in the frame before. */
+struct vk_instance_record {
+    float transform[12]; /* model to world, rows of 3x4 */
+    float back[12];      /* from where it is to where it was */
+    uint32_t lights;     /* place of its lights' numbers in the table of such; 0xffffffff: it has none */
+    uint32_t known;      /* 1: it was there in the frame before */
+};
+
+#define VK_COUNTERS 64 /* of each kind; invocations spread over them */
+#define VK_COUNT_RAYS 0
+#define VK_COUNT_DROPPED 1
+#define VK_COUNT_KINDS 2
+
+/* Fields of a dispatch's record: ADDRESS(type in shaders, name), then WORD(type, name). */
+#define VK_BINDING(ADDRESS, WORD)                                                                                      \
+    ADDRESS(Frame, frame)                                                                                              \
+    ADDRESS(Lights, lights)      /* as they are */                                                                     \
+    ADDRESS(Lights, past_lights) /* as they were when the source's reservoirs were made */                             \
+    ADDRESS(Materials, materials)                                                                                      \
+    ADDRESS(Floats, profiles)                                                                                          \
+    ADDRESS(Words, texels)                                                                                             \
+    ADDRESS(Words, indices)                                                                                            \
+    ADDRESS(Floats, positions)                                                                                         \
+    ADDRESS(Words, triangle_material)                                                                                  \
+    ADDRESS(Words, triangle_light)                                                                                     \
+    ADDRESS(Words, image_places)   /* of each material the place of its texture + 1; 0: none */                        \
+    ADDRESS(Floats, image_corners) /* 2 a vertex */                                                                    \
+    ADDRESS(Instances, instances)                                                                                      \
+    ADDRESS(Words, instance_lights)                                                                                    \
+    ADDRESS(Entries, entries)                                                                                          \
+    ADDRESS(Words, alias)                                                                                              \
+    ADDRESS(Words, tree)                                                                                               \
+    ADDRESS(Floats, environment)                                                                                       \
+    ADDRESS(Floats, backdrop)                                                                                          \
+    ADDRESS(Words, environment_slots)                                                                                  \
+    ADDRESS(Floats, environment_sines)                                                                                 \
+    ADDRESS(SurfaceBlocks, surfaces)                                                                                   \
+    ADDRESS(SurfaceBlocks, previous)                                                                                   \
+    ADDRESS(Words, instance) /* that each pixel sees */                                                                \
+    ADDRESS(ReservoirBlocks, source)                                                                                   \
+    ADDRESS(ReservoirBlocks, target)                                                                                   \
+    ADDRESS(Words, source_visible)                                                                                     \
+    ADDRESS(Words, target_visible)                                                                                     \
+    ADDRESS(ColourBlocks, colour)                                                                                      \
+    ADDRESS(ColourBlocks, picture)                                                                                     \
+    ADDRESS(Coverages, coverage)                                                                                       \
+    ADDRESS(RayBlocks, rays)                                                                                           \
+    ADDRESS(Words, answers)                                                                                            \
+    ADDRESS(HitBlocks, hits)                                                                                           \
+    ADDRESS(SampleRows, samples)                                                                                       \
+    ADDRESS(Floats, weighed)                                                                                           \
+    ADDRESS(Words, counters)                                                                                           \
+    WORD(uint32_t, light_count)                                                                                        \
+    WORD(uint32_t, slots) /* pixels of the picture's blocks: rays of one slot */                                       \
+    WORD(uint32_t, blocks_y)                                                                                           \
+    WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
+    WORD(uint32_t, subsets)                                                                                            \
+    WORD(uint32_t, alias_count)                                                                                        \
+    WORD(uint32_t, dimension) /* of reuse: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */                                 \
+    WORD(uint32_t, first)     /* ray slot, or chunk, at which this dispatch begins */                                  \
+    WORD(uint32_t, fresh)     /* 1: the mean begins with this frame */                                                 \
+    WORD(float, share)        /* of this frame in the mean */                                                          \
+    WORD(float, ray_offset)
+
+#define VK_ANSWER_NONE 0u   /* of a ray: there is none */
+#define VK_ANSWER_WANTED 1u /* to be traced; afterwards: something is in the way */
+#define VK_ANSWER_CLEAR 2u  /* nothing is in the way */
+
+#if !defined(CORE_GLSL)
+/* An entry of the TLAS: what its gl_InstanceCustomIndexEXT stands for. */
+struct vk_entry {
+    uint64_t order;    /* address of the scene's triangle numbers, by gl_PrimitiveID */
+    uint32_t instance; /* 0xffffffff: the world */
+    uint32_t unused;
+};
+
+typedef struct vk_instance_record vk_instance_record;
+typedef struct vk_entry vk_entry;
+RECORD_SIZE(vk_instance_record, 26);
+RECORD_SIZE(vk_entry, 4);
+
+#define VK_ADDRESS_FIELD(type, name) uint64_t name;
+#define VK_WORD_FIELD(type, name) type name;
+typedef struct vk_binding {
+    VK_BINDING(VK_ADDRESS_FIELD, VK_WORD_FIELD)
+} vk_binding;
+#endif
+
+#endif

@@ -1,0 +1,73 @@
+/* The passes of a stage as dispatches: which shader runs over what, and what it reads and writes, so that barriers
+ * follow from data. A pass with rays is three steps: `ask` writes segments, a ray tracing pipeline answers them, `use`
+ * reads the answers. */
+#ifndef NOC_VULKAN_SCHEDULE_H
+#define NOC_VULKAN_SCHEDULE_H
+
+#include "backend/vulkan/shaders.h"
+#include "core/frame.h"
+#include "render/plan.h"
+
+/* What dispatches work on: a bit each. Reservoirs are told apart by their set. Counters are left out: invocations only
+ * add to them. */
+typedef enum vk_resource {
+    VK_RESOURCE_SURFACES,
+    VK_RESOURCE_PREVIOUS,
+    VK_RESOURCE_SET, /* and the next NOC_RESERVOIR_SETS - 1 */
+    VK_RESOURCE_COLOUR = VK_RESOURCE_SET + NOC_RESERVOIR_SETS,
+    VK_RESOURCE_PICTURE,
+    VK_RESOURCE_COVERAGE,
+    VK_RESOURCE_RAYS,
+    VK_RESOURCE_ANSWERS,
+    VK_RESOURCE_HITS,
+    VK_RESOURCE_SAMPLES,
+    VK_RESOURCE_WEIGHED,
+    VK_RESOURCE_COUNT
+} vk_resource;
+
+typedef enum vk_domain {
+    VK_DOMAIN_PIXELS,
+    VK_DOMAIN_RAYS,    /* of `slots` rays a pixel */
+    VK_DOMAIN_SUBSETS, /* of candidates that blocks share: a work group each */
+} vk_domain;
+
+typedef struct vk_step {
+    vk_shader shader;
+    uint32_t reads, writes; /* bits 1 << vk_resource */
+    vk_domain domain;
+    int slots;          /* rays a pixel */
+    int source, target; /* sets of reservoirs */
+    uint32_t dimension; /* of reuse */
+    uint32_t first;
+    bool past; /* rays are traced against the scene of the frame before */
+    bool wait; /* a barrier comes before it */
+    noc_pass pass;
+} vk_step;
+
+/* What is known of a frame before it is recorded. */
+typedef struct vk_facts {
+    const frame_constants *constants;
+    bool history; /* reservoirs of the frame before can be reused */
+    bool moved;   /* what they were traced against is the past scene */
+    bool sky;     /* the sky, or a map, lights */
+} vk_facts;
+
+enum { VK_STAGE_STEPS = 128 };
+
+/* Fills steps, which has room for VK_STAGE_STEPS, with those of a stage; returns how many there are. Of the first stage
+ * those come first that draw candidates for blocks to share. */
+int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_step *steps);
+/* Those that add the frame to the picture. */
+int noc_vk_schedule_mean(const vk_facts *facts, vk_step *steps);
+/* Rays a pixel that any stage of the plan traces at once. */
+int noc_vk_schedule_slots(const noc_plan *plan, const vk_facts *facts);
+
+/* What was read and written since the last barrier. */
+typedef struct vk_hazards {
+    uint32_t read, written;
+} vk_hazards;
+
+/* Sets `wait` of a step that must wait for earlier ones. */
+void noc_vk_find_wait(vk_hazards *hazards, vk_step *step);
+
+#endif

@@ -1,0 +1,18 @@
+/* The shaders of the Vulkan backend, each a file of shaders/ that the build compiles and embeds. */
+#ifndef NOC_VULKAN_SHADERS_H
+#define NOC_VULKAN_SHADERS_H
+
+/* COMPUTE(name): shaders/name.comp. TRACE(name): shaders/name.rgen with its miss and closest-hit shader. */
+#define VK_SHADERS(COMPUTE, TRACE)                                                                                     \
+    TRACE(trace_closest)                                                                                               \
+    TRACE(trace_occlusion)                                                                                             \
+    COMPUTE(primary_ask)                                                                                               \
+    COMPUTE(primary_use)                                                                                               \
+    COMPUTE(emitters)                                                                                                  \
+    COMPUTE(headlight)                                                                                                 \
+    COMPUTE(mean)
+
+#define VK_SHADER_NAME(name) VK_SHADER_##name,
+typedef enum vk_shader { VK_SHADERS(VK_SHADER_NAME, VK_SHADER_NAME) VK_SHADER_COUNT } vk_shader;
+
+#endif

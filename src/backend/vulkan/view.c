@@ -1,0 +1,237 @@
+/* A view: the buffers of its picture on the device, and the picture that is read from them. */
+#include "backend/vulkan/vulkan.h"
+
+/* Bytes a pixel of each kind of buffer, by the records that shaders use. */
+enum {
+    SURFACE_BYTES = sizeof(gblock) / BLOCK,
+    RESERVOIR_BYTES = sizeof(rblock) / BLOCK,
+    COLOUR_BYTES = sizeof(cblock) / BLOCK,
+    RAY_BYTES = sizeof(rayblock) / BLOCK,
+    ANSWER_BYTES = 4,
+    HIT_BYTES = 20, /* triangle, entry, u, v, t */
+    COVERAGE_BYTES = 16,
+};
+
+size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs) {
+    (void)aovs;
+    return 2 * SURFACE_BYTES + (size_t)sets * (RESERVOIR_BYTES + 4) + 2 * COLOUR_BYTES + COVERAGE_BYTES + RAY_BYTES +
+           ANSWER_BYTES + HIT_BYTES;
+}
+
+static void free_picture(vk_device *d, vk_picture *b) {
+    vk_buffer *const buffers[] = { &b->surfaces[0], &b->surfaces[1],   &b->colour,        &b->picture,
+                                   &b->coverage,    &b->rays,          &b->answers,       &b->hits,
+                                   &b->instance,    &b->reservoirs[0], &b->reservoirs[1], &b->reservoirs[2],
+                                   &b->visible[0],  &b->visible[1],    &b->visible[2] };
+    for (size_t i = 0; i < NOC_COUNT(buffers); i++)
+        noc_vk_free_buffer(d, buffers[i]);
+    *b = (vk_picture){ 0 };
+}
+
+static size_t slots_of(const vk_picture *b) { return (size_t)b->blocks_x * b->blocks_y * BLOCK; }
+
+/* A buffer of the picture: `each` bytes a pixel. */
+static noc_status make(vk_view *v, size_t each, vk_buffer *out) {
+    char what[64];
+    noc_snprintf(what, sizeof(what), "a picture of %d x %d", v->b.width, v->b.height);
+    noc_status status = noc_vk_make_buffer(v->device, slots_of(&v->b) * each, 0, VK_PLACE_DEVICE, what, out);
+    v->b.bytes += status == NOC_OK ? slots_of(&v->b) * each : 0;
+    return status;
+}
+
+static noc_status make_picture(vk_view *v) {
+    vk_picture *b = &v->b;
+    const struct {
+        vk_buffer *buffer;
+        size_t bytes;
+    } all[] = { { &b->surfaces[0], SURFACE_BYTES }, { &b->surfaces[1], SURFACE_BYTES }, { &b->colour, COLOUR_BYTES },
+                { &b->picture, COLOUR_BYTES },      { &b->coverage, COVERAGE_BYTES },   { &b->hits, HIT_BYTES } };
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < NOC_COUNT(all) && status == NOC_OK; i++)
+        status = make(v, all[i].bytes, all[i].buffer);
+    return status;
+}
+
+static noc_status resize(vk_view *v, int width, int height, int sets) {
+    vk_picture *b = &v->b;
+    noc_status status = noc_vk_finish_flights(v);
+    if (status != NOC_OK)
+        return status;
+    if (b->width != width || b->height != height) {
+        free_picture(v->device, b);
+        b->width = width;
+        b->height = height;
+        b->blocks_x = ((uint32_t)width + BLOCK_SIDE - 1) / BLOCK_SIDE;
+        b->blocks_y = ((uint32_t)height + BLOCK_SIDE - 1) / BLOCK_SIDE;
+        status = make_picture(v);
+    }
+    for (; b->sets < sets && status == NOC_OK; b->sets++) {
+        status = make(v, RESERVOIR_BYTES, &b->reservoirs[b->sets]);
+        if (status == NOC_OK)
+            status = make(v, 4, &b->visible[b->sets]);
+    }
+    if (status != NOC_OK)
+        free_picture(v->device, b);
+    return status;
+}
+
+noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
+    vk_view *v = view;
+    pthread_mutex_lock(&v->device->lock);
+    noc_status status = resize(v, width, height, sets);
+    pthread_mutex_unlock(&v->device->lock);
+    return status;
+}
+
+noc_status noc_vk_view_fit(vk_view *v, int slots) {
+    vk_picture *b = &v->b;
+    noc_status status = NOC_OK;
+    if (b->slots < slots) {
+        status = noc_vk_finish_flights(v);
+        noc_vk_free_buffer(v->device, &b->rays);
+        noc_vk_free_buffer(v->device, &b->answers);
+        b->bytes -= (size_t)b->slots * slots_of(b) * (RAY_BYTES + ANSWER_BYTES);
+        b->slots = 0;
+        if (status == NOC_OK)
+            status = make(v, (size_t)slots * RAY_BYTES, &b->rays);
+        if (status == NOC_OK)
+            status = make(v, (size_t)slots * ANSWER_BYTES, &b->answers);
+        if (status == NOC_OK)
+            b->slots = slots;
+    }
+    if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)
+        status = make(v, 4, &b->instance);
+    return status;
+}
+
+/* ---- views ---- */
+
+static void free_flight(vk_device *d, vk_flight *f) {
+    if (f->fence)
+        vkDestroyFence(d->device, f->fence, NULL);
+    if (f->times)
+        vkDestroyQueryPool(d->device, f->times, NULL);
+    if (f->commands)
+        vkFreeCommandBuffers(d->device, d->commands, 1, &f->commands);
+    noc_vk_free_buffer(d, &f->constants);
+    noc_vk_free_buffer(d, &f->counts);
+}
+
+static noc_status make_flight(vk_device *d, vk_flight *f) {
+    VkCommandBufferAllocateInfo commands = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                             .commandPool = d->commands,
+                                             .commandBufferCount = 1 };
+    VkFenceCreateInfo fence = { .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO };
+    VkQueryPoolCreateInfo times = { .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                    .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                    .queryCount = VK_STEPS + 1 };
+    VkResult result = vkAllocateCommandBuffers(d->device, &commands, &f->commands);
+    if (result == VK_SUCCESS)
+        result = vkCreateFence(d->device, &fence, NULL, &f->fence);
+    if (result == VK_SUCCESS)
+        result = vkCreateQueryPool(d->device, &times, NULL, &f->times);
+    if (result != VK_SUCCESS)
+        return noc_vk_failed(d, result, "making a view");
+    noc_status status = noc_vk_make_buffer(d, VK_CONSTANTS_BYTES + VK_STEPS * sizeof(vk_binding), 0, VK_PLACE_SHARED,
+                                           "a view", &f->constants);
+    if (status == NOC_OK)
+        status = noc_vk_make_buffer(d, VK_COUNT_KINDS * VK_COUNTERS * 4, 0, VK_PLACE_READBACK, "a view", &f->counts);
+    return status;
+}
+
+static void destroy(vk_view *v) {
+    vk_device *d = v->device;
+    noc_vk_finish_flights(v);
+    vkQueueWaitIdle(d->queue);
+    for (int i = 0; i < VK_FRAMES; i++)
+        free_flight(d, &v->flights[i]);
+    free_picture(d, &v->b);
+    noc_vk_free_buffer(d, &v->samples);
+    noc_vk_free_buffer(d, &v->weighed);
+    noc_vk_free_buffer(d, &v->counters);
+    noc_vk_free_buffer(d, &v->past_lights);
+}
+
+void noc_vk_view_destroy(void *view) {
+    vk_view *v = view;
+    if (!v)
+        return;
+    noc_vk_forget_host_view(v);
+    noc_light_set_release(v->world->lights_set, &v->sources);
+    pthread_mutex_lock(&v->device->lock);
+    destroy(v);
+    pthread_mutex_unlock(&v->device->lock);
+    free(v);
+}
+
+noc_status noc_vk_view_create(void *world, void **view) {
+    vk_world *w = world;
+    vk_device *d = w->device;
+    vk_view *v = noc_calloc(1, sizeof(*v));
+    if (!v)
+        return noc_no_memory(w->log, "view");
+    *v = (vk_view){ .world = w, .device = d, .scene = w->scene, .log = w->log };
+    pthread_mutex_lock(&d->lock);
+    noc_status status =
+        noc_vk_make_buffer(d, VK_COUNT_KINDS * VK_COUNTERS * 4, 0, VK_PLACE_DEVICE, "a view", &v->counters);
+    for (int i = 0; i < VK_FRAMES && status == NOC_OK; i++)
+        status = make_flight(d, &v->flights[i]);
+    pthread_mutex_unlock(&d->lock);
+    if (status != NOC_OK) {
+        noc_vk_view_destroy(v);
+        return status;
+    }
+    *view = v;
+    return NOC_OK;
+}
+
+/* ---- reading ---- */
+
+static void copy_block(const vk_view *v, const cblock *c, const float (*coverage)[4], uint32_t bx, uint32_t by,
+                       noc_image *image) {
+    for (int l = 0; l < BLOCK; l++) {
+        int x = (int)bx * BLOCK_SIDE + (l & 3), y = (int)by * BLOCK_SIDE + (l >> 2);
+        if (x >= v->b.width || y >= v->b.height)
+            continue;
+        size_t to = (size_t)y * (size_t)v->b.width + (size_t)x;
+        for (int k = 0; k < 3; k++)
+            image->rgb[3 * to + (size_t)k] = c->rgb[k][l];
+        if (image->emitter)
+            image->emitter[to] = coverage[l][3] > 0;
+        for (int k = 0; k < 4 && image->coverage; k++)
+            image->coverage[4 * to + (size_t)k] = coverage[l][k] / (float)v->coverage_frames;
+    }
+}
+
+/* The picture and the emitters in it, a run of rows of blocks at a time. */
+static noc_status read_rows(vk_view *v, noc_image *image, cblock *colour, float (*coverage)[BLOCK][4], uint32_t rows) {
+    const vk_picture *b = &v->b;
+    noc_status status = noc_vk_finish_flights(v);
+    for (uint32_t first = 0; first < b->blocks_y && status == NOC_OK; first += rows) {
+        size_t n = (size_t)NOC_MIN(rows, b->blocks_y - first) * b->blocks_x, at = (size_t)first * b->blocks_x;
+        status = noc_vk_read(v->device, &b->picture, at * sizeof(*colour), colour, n * sizeof(*colour));
+        if (status == NOC_OK)
+            status = noc_vk_read(v->device, &b->coverage, at * sizeof(*coverage), coverage, n * sizeof(*coverage));
+        for (size_t i = 0; i < n && status == NOC_OK; i++)
+            copy_block(v, &colour[i], (const float(*)[4])coverage[i], (uint32_t)(i % b->blocks_x),
+                       first + (uint32_t)(i / b->blocks_x), image);
+    }
+    return status;
+}
+
+noc_status noc_vk_read_picture(void *view, noc_image *image) {
+    vk_view *v = view;
+    uint32_t rows = NOC_MAX((1u << 18) / (v->b.blocks_x * BLOCK), 1u);
+    size_t n = (size_t)rows * v->b.blocks_x;
+    cblock *colour = noc_alloc_large(n, sizeof(*colour));
+    float(*coverage)[BLOCK][4] = noc_alloc_large(n, sizeof(*coverage));
+    noc_status status = colour && coverage ? NOC_OK : noc_no_memory(v->log, "render");
+    if (status == NOC_OK) {
+        pthread_mutex_lock(&v->device->lock);
+        status = read_rows(v, image, colour, coverage, rows);
+        pthread_mutex_unlock(&v->device->lock);
+    }
+    free(colour);
+    free(coverage);
+    return status;
+}

@@ -1,0 +1,290 @@
+/* State of the Vulkan backend: a device, the worlds on it (a scene each), and the views of each world.
+ *
+ * A device has one queue, and one lock that is held from the first stage of a frame to its submission, so commands of
+ * views that render at the same time follow each other. Everything is ordered by that queue: uploads and builds are
+ * command buffers of their own, submitted before the frame that needs them. */
+#ifndef NOC_VULKAN_H
+#define NOC_VULKAN_H
+
+#include "backend/parts.h"
+#include "backend/vulkan/records.h"
+#include "backend/vulkan/schedule.h"
+#include "light/set.h"
+#include "render/backend.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <volk.h>
+
+/* ---- memory.c ---- */
+
+/* A buffer with an allocation of its own. bytes 0: there is none. */
+typedef struct vk_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    VkDeviceAddress address;
+    VkDeviceSize bytes;
+    void *mapped; /* NULL: the host does not see it */
+} vk_buffer;
+
+/* Where a buffer is allocated. */
+typedef enum vk_place {
+    VK_PLACE_DEVICE,   /* memory of the device; filled by noc_vk_write */
+    VK_PLACE_SHARED,   /* mapped, written by the host, read by the device */
+    VK_PLACE_READBACK, /* mapped, written by the device, read by the host */
+} vk_place;
+
+/* A command buffer for uploads and builds, with its part of the staging ring. */
+typedef struct vk_upload {
+    VkCommandBuffer commands;
+    VkFence fence;
+    VkDeviceSize used;
+    bool pending; /* submitted, and the fence not waited for */
+} vk_upload;
+
+enum { VK_UPLOADS = 4, VK_UPLOAD_BYTES = 8 << 20 };
+
+/* ---- device.c ---- */
+
+/* A pipeline and, of ray tracing ones, where its shaders are in the binding table. */
+typedef struct vk_pipeline {
+    VkPipeline pipeline;
+    VkStridedDeviceAddressRegionKHR raygen, miss, hit;
+} vk_pipeline;
+
+typedef struct vk_device {
+    noc_log *log;
+    noc_pool *pool;
+    VkInstance instance;
+    VkDebugUtilsMessengerEXT messenger; /* VK_NULL_HANDLE: validation is off */
+    VkPhysicalDevice physical;
+    VkDevice device;
+    VkQueue queue;
+    uint32_t family;
+    VkPhysicalDeviceMemoryProperties memory;
+    VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays;
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR structures;
+    char name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
+    char path[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE + 16]; /* noc_frame_stats.path */
+    bool software;                                    /* a processor plays the device */
+    double tick;                                      /* s, of a timestamp */
+    uint64_t tick_mask;                               /* valid bits of a timestamp; 0: there are none */
+    pthread_mutex_t lock;
+    bool lost; /* reported */
+    VkCommandPool commands;
+    vk_buffer staging, readback;
+    vk_upload uploads[VK_UPLOADS];
+    int upload;     /* the open one, or the next to be opened */
+    bool uploading; /* it is open */
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkPipelineCache cache;
+    vk_pipeline pipelines[VK_SHADER_COUNT];
+    vk_buffer table; /* shader binding table, of all ray tracing pipelines */
+    double pipeline_seconds;
+    size_t bytes; /* allocated */
+    noc_device_params params;
+    pthread_mutex_t host_lock;
+    void *host; /* the CPU backend's device; NULL: no question was asked yet */
+} vk_device;
+
+/* ---- structure.c ---- */
+
+/* Triangles that are built together, and where their numbers in the scene are. */
+typedef struct vk_blas {
+    VkAccelerationStructureKHR structure;
+    VkDeviceAddress address;
+    vk_buffer store, order;
+} vk_blas;
+
+typedef struct vk_part {
+    noc_part of;
+    NOC_ARRAY(vk_blas) blas;
+    int holders;
+} vk_part;
+
+typedef NOC_ARRAY(vk_part *) vk_parts;
+
+/* What rays are traced against: all parts of the world, and models where instances are. */
+typedef struct vk_tlas {
+    VkAccelerationStructureKHR structure;
+    vk_buffer store;
+    VkDescriptorSet set;
+    vk_parts held; /* parts that it refers to */
+    uint32_t room; /* instances that it has room for */
+} vk_tlas;
+
+typedef struct vk_structure {
+    vk_parts world;  /* parts of the world in the order of their meshes */
+    vk_parts models; /* NULL for those that no instance has shown */
+    vk_tlas tlas[2]; /* now and past, by turns */
+    int now;
+    vk_buffer instances, entries, scratch; /* of the TLAS */
+    VkDescriptorPool sets;
+    uint64_t geometry, moved; /* versions of the scene that it knows */
+} vk_structure;
+
+/* ---- world.c ---- */
+
+/* An array of the scene on the device. */
+typedef struct vk_array {
+    vk_buffer buffer;
+    size_t filled; /* bytes */
+} vk_array;
+
+/* What the tables of candidates on the device were made from. */
+typedef struct vk_sources_key {
+    uint64_t commits;
+    const void *alias, *tree, *map;
+} vk_sources_key;
+
+typedef struct vk_world {
+    vk_device *device;
+    const noc_scene *scene;
+    noc_log *log;
+    vk_structure structure;
+    vk_array positions, indices, triangle_material, triangle_light, materials, lights, profiles, texels;
+    vk_array image_places, image_corners; /* textures: of each material; of each vertex */
+    vk_array instances, instance_lights;
+    vk_array backdrop, environment, environment_slots, environment_sines;
+    vk_array alias, tree;
+    vk_sources_key drawn_from;
+    noc_scene_versions seen; /* that the arrays know */
+    bool filled;
+    uint64_t shape, past; /* noc_scene_shape of the scene that the structure knows, and of that before */
+    double build_seconds;
+    noc_ray_scale scale;
+    noc_light_set *lights_set;
+    void *host; /* the CPU backend's world; NULL: no question was asked yet */
+} vk_world;
+
+/* ---- view.c and frame.c ---- */
+
+enum { VK_FRAMES = 2, VK_STEPS = 192, VK_CONSTANTS_BYTES = 512 };
+_Static_assert(sizeof(frame_constants) <= VK_CONSTANTS_BYTES, "constants lie before the records of dispatches");
+
+/* What a frame in flight has for itself. */
+typedef struct vk_flight {
+    VkCommandBuffer commands;
+    VkFence fence;
+    VkQueryPool times;
+    vk_buffer constants; /* frame_constants, then a vk_binding for each step */
+    vk_buffer counts;    /* read back: vk_counts */
+    int steps;
+    noc_pass timed[VK_STEPS]; /* the pass that ends with each timestamp but the first */
+    int times_count;
+    bool pending;
+} vk_flight;
+
+/* Buffers of one picture. */
+typedef struct vk_picture {
+    int width, height, sets, slots;
+    uint32_t blocks_x, blocks_y;
+    vk_buffer surfaces[2], reservoirs[NOC_RESERVOIR_SETS], visible[NOC_RESERVOIR_SETS];
+    vk_buffer colour, picture, coverage;
+    vk_buffer rays, answers, hits; /* of `slots` rays a pixel */
+    vk_buffer instance;            /* that each pixel sees; none: the scene has had none */
+    size_t bytes;
+} vk_picture;
+
+typedef struct vk_view {
+    vk_world *world;
+    vk_device *device;
+    const noc_scene *scene;
+    noc_log *log;
+    vk_picture b;
+    vk_flight flights[VK_FRAMES];
+    int flight; /* of the frame being made, or of the next one */
+    bool open;  /* a frame is being recorded, and the device is locked */
+    vk_hazards hazards;
+    vk_buffer samples, weighed, counters;
+    vk_buffer past_lights;
+    noc_light_sources sources;
+    const noc_map_light *map_light;
+    noc_light_stats told;
+    uint32_t subsets;
+    uint64_t coverage_frames; /* of the mean */
+    noc_frame_stats stats;    /* of finished frames since they were last asked for */
+    void *host;               /* the CPU backend's view; NULL: no question was asked yet */
+} vk_view;
+
+/* device.c */
+/* Reports a result that is no success, once; a lost device once for all that follows. what: "building ...". */
+noc_status noc_vk_failed(vk_device *d, VkResult result, const char *what);
+noc_status noc_vk_device_create(const noc_device_params *params, noc_log *log, void **device);
+void noc_vk_device_destroy(void *device);
+
+/* memory.c */
+/* Makes a buffer of `bytes` > 0 bytes; what is in *b is overwritten. usage: beside storage, transfers and its address.
+ * On failure, which is reported with `what`, *b is empty. */
+noc_status noc_vk_make_buffer(vk_device *d, VkDeviceSize bytes, VkBufferUsageFlags usage, vk_place place,
+                              const char *what, vk_buffer *b);
+void noc_vk_free_buffer(vk_device *d, vk_buffer *b); /* an empty one is allowed; no command in flight may use it */
+noc_status noc_vk_memory_create(vk_device *d);
+void noc_vk_memory_destroy(vk_device *d);
+/* Commands that come after all that was submitted before, and before what is submitted later; the device is locked.
+ * *commands is for this call's user until the next call of these four. */
+noc_status noc_vk_open_upload(vk_device *d, VkCommandBuffer *commands);
+noc_status noc_vk_write(vk_device *d, const vk_buffer *to, VkDeviceSize at, const void *data, size_t bytes);
+noc_status noc_vk_submit_upload(vk_device *d); /* nothing is open: nothing happens */
+noc_status noc_vk_wait_idle(vk_device *d);     /* submits what is open, too */
+/* Waits for all that was submitted, and copies. */
+noc_status noc_vk_read(vk_device *d, const vk_buffer *from, VkDeviceSize at, void *data, size_t bytes);
+/* Writes of all commands before are seen by all commands after. */
+void noc_vk_barrier(VkCommandBuffer commands);
+
+/* pipelines.c */
+noc_status noc_vk_pipelines_create(vk_device *d);
+void noc_vk_pipelines_destroy(vk_device *d);
+/* The pipeline of a shader, made when it is first asked for. */
+noc_status noc_vk_pipeline(vk_device *d, vk_shader shader, const vk_pipeline **pipeline);
+
+/* structure.c */
+noc_status noc_vk_structure_create(vk_world *w);
+/* Brings the structure to the scene's meshes and instances; it is as it was where this fails. */
+noc_status noc_vk_structure_follow(vk_world *w);
+void noc_vk_structure_destroy(vk_world *w);
+size_t noc_vk_structure_bytes(const vk_world *w);
+
+/* world.c */
+noc_status noc_vk_world_create(void *device, const noc_scene *scene, void **world);
+void noc_vk_world_destroy(void *world);
+/* Brings everything on the device to the scene as it is; the device is locked. */
+noc_status noc_vk_world_follow(vk_world *w);
+/* Uploads what the candidates of the sources are drawn from. */
+noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map);
+
+/* view.c */
+noc_status noc_vk_view_create(void *world, void **view);
+void noc_vk_view_destroy(void *view);
+size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
+noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
+/* Room for so many rays a pixel, and for instances where the scene has some. */
+noc_status noc_vk_view_fit(vk_view *v, int slots);
+noc_status noc_vk_read_picture(void *view, noc_image *image);
+
+/* frame.c */
+noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
+                        double from, double to);
+noc_status noc_vk_accumulate(void *view, const noc_frame *frame);
+void noc_vk_stats(void *view, noc_frame_stats *stats);
+noc_status noc_vk_finish_flights(vk_view *v); /* waits for the view's frames in flight and takes what they counted */
+
+/* Views that only the CPU backend keeps so far are none here. */
+bool noc_vk_read_aov(void *view, noc_aov aov, float *value);
+void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
+void noc_vk_light_stats(void *view, noc_light_stats *stats);
+void noc_vk_record(void *view, bool on);
+noc_status noc_vk_replay(void *view, noc_trace_floor *floor);
+
+/* host.c: questions that the CPU backend answers */
+void noc_vk_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
+noc_status noc_vk_cast(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
+noc_status noc_vk_ask(void *view, const noc_render_params *params, bool tree, noc_asking *out);
+void noc_vk_clear(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
+noc_status noc_vk_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes);
+void noc_vk_forget_host_view(vk_view *v);
+void noc_vk_forget_host_world(vk_world *w);
+void noc_vk_forget_host_device(vk_device *d);
+
+#endif
