@@ -55,10 +55,10 @@ static noc_status plan(lab_session *lab) {
     const lab_spec *spec = lab->spec;
     lab->run_count = spec->camera_count * (size_t)spec->repetitions * spec->config_count;
     lab->runs = noc_calloc(lab->run_count, sizeof(*lab->runs));
-    lab->scene_infos = noc_calloc(spec->scene_count, sizeof(*lab->scene_infos));
+    lab->holdings = noc_calloc(spec->scene_count, sizeof(*lab->holdings));
     lab->crops = noc_calloc(spec->camera_count, sizeof(*lab->crops));
     lab->noises = noc_calloc(spec->camera_count, sizeof(*lab->noises));
-    if (!lab->runs || !lab->scene_infos || !lab->crops || !lab->noises) {
+    if (!lab->runs || !lab->holdings || !lab->crops || !lab->noises) {
         lab->run_count = lab->runs ? lab->run_count : 0;
         return noc_no_memory(lab->log, "runs");
     }
@@ -108,7 +108,7 @@ void noc_lab_destroy(noc_lab *lab) {
         for (int mode = 0; mode < LAB_MODES; mode++)
             free(lab->runs[i].rows[mode]);
     free(lab->runs);
-    free(lab->scene_infos);
+    free(lab->holdings);
     free(lab->crops);
     free(lab->noises);
     array_free(&lab->stored);

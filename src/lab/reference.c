@@ -15,6 +15,20 @@ static bool loading(void *user, const char *what, double done) {
     return lab_go_on(user, &(noc_lab_progress){ NOC_LAB_LOADING, done, -1, what, 0, 0 });
 }
 
+/* Lamps are counted by the data; where no file has any, by the lights of the group "lamps", as in the built-in city. */
+static void take_holdings(const noc_scene *scene, const noc_report *report, lab_holdings *held) {
+    noc_report_totals totals;
+    noc_group_info groups[32];
+    noc_scene_get_info(scene, &held->info);
+    noc_report_get_totals(report, &totals);
+    held->buildings = totals.buildings;
+    held->lamps = totals.lamps_mapped + totals.lamps_inferred;
+    size_t count = noc_scene_groups(scene, groups, NOC_COUNT(groups));
+    for (size_t i = 0; !held->lamps && i < NOC_MIN(count, NOC_COUNT(groups)); i++)
+        if (!strcmp(groups[i].name, "lamps"))
+            held->lamps = groups[i].lights;
+}
+
 noc_status lab_load_scene(lab_session *lab, size_t index) {
     const lab_scene *scene = &lab->spec->scenes[index];
     noc_import_params import = scene->import;
@@ -24,15 +38,18 @@ noc_status lab_load_scene(lab_session *lab, size_t index) {
     lab->scene = noc_scene_create(lab->log);
     if (!lab->scene)
         return NOC_ERR_MEMORY;
+    noc_report *report = NULL;
     noc_status status = loading(lab, scene->name, 0)
-                            ? noc_scene_load(lab->scene, scene->inputs, scene->input_count, &import, NULL)
+                            ? noc_scene_load(lab->scene, scene->inputs, scene->input_count, &import, &report)
                             : NOC_ERR_CANCELLED;
     loading(lab, NULL, 1);
+    if (!status)
+        take_holdings(lab->scene, report, &lab->holdings[index]);
+    noc_report_destroy(report);
     if (status)
         return status;
-    noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
     noc_scene_content(lab->scene, lab->content);
-    if (!lab->scene_infos[index].triangles)
+    if (!lab->holdings[index].info.triangles)
         return noc_error(lab->log, NOC_ERR_FORMAT, "%s: its inputs hold no surface that can be drawn", scene->name);
     return NOC_OK;
 }

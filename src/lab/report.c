@@ -74,9 +74,33 @@ static void print_confidence(FILE *out, int n) {
                     n < 4 ? ": differences smaller than that are not shown by so few repetitions" : "");
 }
 
+static void print_count(FILE *out, size_t count) {
+    char text[32];
+    noc_fprintf(out, " %s |", noc_text_count(text, count));
+}
+
+static void print_scenes(FILE *out, const lab_session *lab) {
+    const lab_spec *spec = lab->spec;
+    char memory[32];
+    lab_table_head(out, "| Scene | Buildings | Triangles | Windows | lit | Lamps | Cars | Lights | Memory |", 8);
+    for (size_t i = 0; i < spec->scene_count; i++) {
+        const lab_holdings *held = &lab->holdings[i];
+        const noc_scene_info *info = &held->info;
+        const size_t counts[] = { held->buildings, info->triangles + info->instance_triangles,
+                                  info->windows,   info->windows_lit,
+                                  held->lamps,     info->cars,
+                                  info->lights };
+        fputc('|', out);
+        lab_cell(out, spec->scenes[i].name);
+        for (size_t k = 0; k < NOC_COUNT(counts); k++)
+            print_count(out, counts[k]);
+        noc_fprintf(out, " %s |\n", noc_text_bytes(memory, info->memory_bytes));
+    }
+}
+
 static void print_setting(FILE *out, const lab_session *lab) {
     const lab_spec *spec = lab->spec;
-    char date[40] = "", text[32], memory[32];
+    char date[40] = "";
     time_t now = time(NULL);
     struct tm utc;
     if (gmtime_r(&now, &utc))
@@ -113,14 +137,7 @@ static void print_setting(FILE *out, const lab_session *lab) {
     noc_fprintf(
         out,
         "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
-    lab_table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
-    for (size_t i = 0; i < spec->scene_count; i++) {
-        fputc('|', out);
-        lab_cell(out, spec->scenes[i].name);
-        noc_fprintf(out, " %s |", noc_text_count(text, lab->scene_infos[i].triangles));
-        noc_fprintf(out, " %s | %s |\n", noc_text_count(text, lab->scene_infos[i].lights),
-                    noc_text_bytes(memory, lab->scene_infos[i].memory_bytes));
-    }
+    print_scenes(out, lab);
     noc_fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);

@@ -83,6 +83,12 @@ typedef struct lab_stored {
     double values[COL_COUNT];
 } lab_stored;
 
+/* What a scene holds, for the report. */
+typedef struct lab_holdings {
+    noc_scene_info info; /* its texts belong to the scene, which is gone */
+    size_t buildings, lamps;
+} lab_holdings;
+
 typedef struct lab_crop {
     int x, y, width, height, scale, columns;
 } lab_crop;
@@ -115,9 +121,9 @@ typedef struct noc_lab {
     noc_camera camera, before; /* at its pose, and before the cut */
     char reference_key[LAB_KEY];
     /* kept for the report */
-    noc_scene_info *scene_infos; /* a scene */
-    lab_crop *crops;             /* a camera */
-    noc_lab_noise *noises;       /* a camera */
+    lab_holdings *holdings; /* a scene */
+    lab_crop *crops;        /* a camera */
+    noc_lab_noise *noises;  /* a camera */
 } lab_session;
 
 lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition);
