@@ -41,7 +41,14 @@ static const lab_options spec_options[] = { { spec_table, 0, NULL }, { NULL } };
 static const lab_options reference_options[] = { { reference_table, 0, NULL },
                                                  { noc_render_options, offsetof(S, reference.params), by_spec },
                                                  { NULL } };
-static const lab_options scene_options[] = { { noc_import_options, offsetof(lab_scene, import), NULL },
+static const noc_option scene_rows[] = {
+    { "optional", "Scene", NOC_OPTION_BOOL, offsetof(lab_scene, optional), 0, 1, NULL, "", "" },
+    { NULL },
+};
+static const noc_option *scene_table(void) { return scene_rows; }
+
+static const lab_options scene_options[] = { { scene_table, 0, NULL },
+                                             { noc_import_options, offsetof(lab_scene, import), NULL },
                                              { noc_city_options, offsetof(lab_scene, builtin.city), NULL },
                                              { noc_builtin_options, offsetof(lab_scene, builtin), NULL },
                                              { NULL } };
@@ -79,6 +86,29 @@ static noc_status check_input(const S *spec, const char *place, const char *inpu
     return lab_io_error(spec->log, input);
 }
 
+/* Returns the i-th of all files that the scene names: inputs, lamps, tracks, environment. NULL: there are no more. */
+static const char *file_of(const lab_scene *scene, size_t i) {
+    const noc_import_params *import = &scene->import;
+    if (i < scene->input_count)
+        return scene->inputs[i];
+    i -= scene->input_count;
+    if (i < import->lamps.count)
+        return import->lamps.text[i];
+    i -= import->lamps.count;
+    if (i < import->tracks.count)
+        return import->tracks.text[i];
+    return i == import->tracks.count ? import->environment : NULL;
+}
+
+/* Returns the first file of an optional scene that does not exist. NULL: the scene is not left out. */
+static const char *absent_file(const lab_scene *scene) {
+    const char *file;
+    for (size_t i = 0; scene->optional && (file = file_of(scene, i)); i++)
+        if (strncmp(file, BUILTIN, strlen(BUILTIN)) && access(file, F_OK) && (errno == ENOENT || errno == ENOTDIR))
+            return file;
+    return NULL;
+}
+
 static noc_status check_inputs(const S *spec, const char *place, json_t *object, const lab_scene *scene) {
     const noc_option *const tables[] = { noc_city_options(), noc_builtin_options() };
     for (size_t k = 0; k < 2; k++)
@@ -89,14 +119,9 @@ static noc_status check_inputs(const S *spec, const char *place, json_t *object,
                 return lab_wrong(spec, place, "%s is for the input %s", o->name, needed);
         }
     noc_status status = NOC_OK;
-    for (size_t i = 0; i < scene->input_count && !status; i++)
-        status = check_input(spec, place, scene->inputs[i]);
-    for (size_t i = 0; i < scene->import.lamps.count && !status; i++)
-        status = check_input(spec, place, scene->import.lamps.text[i]);
-    for (size_t i = 0; i < scene->import.tracks.count && !status; i++)
-        status = check_input(spec, place, scene->import.tracks.text[i]);
-    if (scene->import.environment && !status)
-        status = check_input(spec, place, scene->import.environment);
+    const char *file;
+    for (size_t i = 0; !status && (file = file_of(scene, i)); i++)
+        status = check_input(spec, place, file);
     return status;
 }
 
@@ -185,7 +210,7 @@ static noc_status read_scene(S *spec, const char *place, json_t *object, lab_sce
     if (status)
         return status;
     note_chosen(object, scene);
-    return check_inputs(spec, place, object, scene);
+    return absent_file(scene) ? NOC_OK : check_inputs(spec, place, object, scene);
 }
 
 static noc_status check_twice(S *spec, const char *what, const char *const *name, size_t stride, size_t count) {
@@ -198,6 +223,43 @@ static noc_status check_twice(S *spec, const char *what, const char *const *name
     return NOC_OK;
 }
 
+/* The next of the spec's scenes. One that is left out gives its slot back. */
+static noc_status add_scene(S *spec, const char *place, json_t *object, json_t *cameras) {
+    lab_scene *scene = &spec->scenes[spec->scene_count++];
+    noc_status status = read_scene(spec, place, object, scene);
+    const char *absent = status ? NULL : absent_file(scene);
+    if (absent) {
+        noc_warn(spec->log, "%.200s: %s: \"%s\" is left out: %s: %s", spec->path, place, scene->name, absent,
+                 strerror(ENOENT));
+        spec->absent[spec->absent_count++] = (lab_absent){ scene->name, arena_strdup(&spec->arena, absent) };
+        noc_recipe_destroy(scene->recipe);
+        spec->scene_count--;
+        return spec->arena.refused ? lab_spec_no_memory(spec) : NOC_OK;
+    }
+    json_t *own = status ? NULL : json_object_get(object, "cameras");
+    return status ? status : lab_read_cameras(spec, own ? place : "", own ? own : cameras, spec->scene_count - 1);
+}
+
+/* scenes: the array; NULL: `scene` is the only one. */
+static noc_status read_scenes(S *spec, json_t *scene, json_t *scenes, json_t *cameras) {
+    size_t count = scenes ? json_array_size(scenes) : 1;
+    noc_status status = lab_too_many(spec, "", count, LAB_ENTRIES, "scenes");
+    if (status)
+        return status;
+    spec->scenes = noc_calloc(count, sizeof(*spec->scenes));
+    spec->absent = noc_calloc(count, sizeof(*spec->absent));
+    if (!spec->scenes || !spec->absent)
+        return lab_spec_no_memory(spec);
+    char place[64];
+    for (size_t i = 0; !status && i < count; i++) {
+        noc_snprintf(place, sizeof(place), scenes ? "scenes[%zu]" : "scene", i);
+        status = add_scene(spec, place, scenes ? json_array_get(scenes, i) : scene, cameras);
+    }
+    if (!status && !spec->scene_count)
+        return noc_error(spec->log, NOC_ERR_IO, "%.200s: inputs of all its scenes are absent", spec->path);
+    return status;
+}
+
 static noc_status read_lists(S *spec, json_t *root, const lab_config *shared) {
     json_t *scenes = json_object_get(root, "scenes"), *scene = json_object_get(root, "scene");
     json_t *cameras = json_object_get(root, "cameras"), *configs = json_object_get(root, "configurations");
@@ -205,22 +267,10 @@ static noc_status read_lists(S *spec, json_t *root, const lab_config *shared) {
         return lab_wrong(spec, "", "it needs one of scene, {...}, and scenes, [{...}, ...]");
     if ((scenes && !json_array_size(scenes)) || !json_array_size(configs))
         return lab_wrong(spec, "", "it needs scenes and configurations, arrays that are not empty");
-    size_t scene_count = scenes ? json_array_size(scenes) : 1;
-    noc_status status = lab_too_many(spec, "", scene_count, LAB_ENTRIES, "scenes");
-    if (status)
-        return status;
-    spec->scenes = noc_calloc(scene_count, sizeof(*spec->scenes));
-    if (!spec->scenes)
-        return lab_spec_no_memory(spec);
+    noc_status status = read_scenes(spec, scene, scenes, cameras);
     char place[64];
-    for (; !status && spec->scene_count < scene_count; spec->scene_count++) {
-        noc_snprintf(place, sizeof(place), scenes ? "scenes[%zu]" : "scene", spec->scene_count);
-        json_t *object = scenes ? json_array_get(scenes, spec->scene_count) : scene;
-        status = read_scene(spec, place, object, &spec->scenes[spec->scene_count]);
-        json_t *own = status ? NULL : json_object_get(object, "cameras");
-        status = status ? status : lab_read_cameras(spec, own ? place : "", own ? own : cameras, spec->scene_count);
-    }
     for (size_t i = 0; !status && i < json_array_size(configs); i++) {
+
         noc_snprintf(place, sizeof(place), "configurations[%zu]", i);
         status = lab_read_config(spec, place, json_array_get(configs, i), shared, i);
     }

@@ -96,6 +96,13 @@ static void print_scenes(FILE *out, const lab_session *lab) {
             print_count(out, counts[k]);
         noc_fprintf(out, " %s |\n", noc_text_bytes(memory, info->memory_bytes));
     }
+    for (size_t i = 0; i < spec->absent_count; i++) {
+        fputs(i ? ", " : "\nLeft out, because an input is absent: ", out);
+        lab_text(out, spec->absent[i].name);
+        fputs(" (", out);
+        lab_text(out, spec->absent[i].input);
+        fputs(i + 1 < spec->absent_count ? ")" : ").\n", out);
+    }
 }
 
 static void print_setting(FILE *out, const lab_session *lab) {

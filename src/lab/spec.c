@@ -7,6 +7,7 @@ void noc_lab_spec_destroy(noc_lab_spec *spec) {
     for (size_t i = 0; i < spec->scene_count; i++)
         noc_recipe_destroy(spec->scenes[i].recipe);
     free(spec->scenes);
+    free(spec->absent);
     free(spec->cameras);
     free(spec->configs);
     arena_free(&spec->arena);

@@ -30,7 +30,13 @@ typedef struct lab_scene {
     noc_import_params import;
     noc_builtin_params builtin;
     noc_recipe *recipe; /* among its inputs, whose texts it holds; NULL: none */
+    bool optional;      /* left out where an input is absent */
 } lab_scene;
+
+/* A scene that was left out, and the input that is absent. */
+typedef struct lab_absent {
+    const char *name, *input;
+} lab_absent;
 
 /* Parts of a camera's picture that are shown enlarged below it, in frames of a colour each. */
 enum { LAB_INSETS = 4 };
@@ -97,10 +103,12 @@ typedef struct noc_lab_spec {
         noc_render_params params;
     } reference;
     lab_scene *scenes;
+    lab_absent *absent;  /* of the spec's scenes those that are left out */
     lab_camera *cameras; /* scene by scene */
     lab_config *configs;
-    size_t scene_count, camera_count, config_count;
+    size_t scene_count, absent_count, camera_count, config_count;
     noc_arena arena; /* of all that the others point at */
+
 } lab_spec;
 
 bool lab_among(const char *const *names, const char *name); /* NULL-ended; may be NULL */

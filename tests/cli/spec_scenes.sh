@@ -1,5 +1,5 @@
 #!/bin/sh
-# Scenes of specs: what the report says they hold.
+# Scenes of specs: those left out where data is absent, what the report says they hold.
 . "$(dirname "$0")/lib.sh"
 export XDG_CACHE_HOME="$work/home"
 
@@ -13,6 +13,33 @@ spec() {
 SPEC
 }
 cp "$source_dir/tests/cli/city.gml" .
+
+# ---- absent inputs ----
+one='{ "name": "one", "inputs": ["builtin:single"] }'
+spec absent.json "{ \"name\": \"<gone>\", \"optional\": true, \"inputs\": [\"city.gml\", \"gone.gml\"] }, $one"
+run experiment absent.json -o absent
+test $status = 0 && test "$(cat err)" = \
+    'nocturne: warning: absent.json: scenes[0]: "<gone>" is left out: gone.gml: No such file or directory'
+result $? "an optional scene without its input is left out, with a warning"
+grep -q '^Left out, because an input is absent: &lt;gone&gt; (gone.gml).$' absent/report.md &&
+    test "$(cut -d, -f1 absent/results.csv | sort -u | tr '\n' ' ')" = "one scene "
+result $? "the report lists it, and the others are measured"
+spec lamps.json "{ \"name\": \"l\", \"optional\": true, \"inputs\": [\"city.gml\"], \"lamps\": [\"gone.csv\"] }, $one"
+run experiment lamps.json -o lamps
+test $status = 0 && grep -q 'is left out: gone.csv: No such' err; result $? "so is one whose lamps are absent"
+printf 'nocturne: 1\ninputs: [away.gml]\n' >away.yaml
+spec recipe.json "{ \"name\": \"r\", \"optional\": true, \"inputs\": [\"away.yaml\"] }, $one"
+run experiment recipe.json -o recipe
+test $status = 0 && grep -Eq 'is left out: (\./)?away.gml: No such' err
+result $? "and one whose recipe names an absent input"
+sed 's/"optional": true/"optional": false/' absent.json >wrong.json
+expect "a scene that is not optional is an error" 1 '^nocturne: gone.gml: No such file' experiment wrong.json -o w
+sed 's/gone.gml/./' absent.json >wrong.json
+expect "an optional scene's folder, too" 1 '^nocturne: \.: Is a directory' experiment wrong.json -o w
+spec all.json '{ "name": "gone", "optional": true, "inputs": ["gone.gml"] }'
+expect "a spec whose scenes are all left out" 1 'nocturne: all.json: inputs of all its scenes are absent$' \
+    experiment all.json -o w
+test ! -e w; result $? "nothing is written after these errors"
 
 # ---- what scenes hold ----
 "$program" info --scene --json city.gml >info.json 2>err
