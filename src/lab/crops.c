@@ -15,13 +15,18 @@ typedef struct panels {
     int width, height;  /* of a picture */
     double ev100;       /* of all: the reference's automatic exposure */
     uint8_t *reference; /* 8-bit sRGB */
+    bool light;         /* the light view; the reference has none */
 } panels;
 
 /* NULL after reporting that memory was refused. */
-static uint8_t *display(const noc_image *image, double ev100, noc_log *log) {
+static uint8_t *display(const noc_image *image, double ev100, bool light, noc_log *log) {
     noc_display_params params = noc_display_default_params();
     params.auto_exposure = false;
     params.ev100 = ev100;
+    if (light) { /* as it was written: white is 1 */
+        params.tonemap = NOC_TONEMAP_LINEAR;
+        params.ev100 = -log2(1.2);
+    }
     uint8_t *rgb = noc_alloc((size_t)image->width * (size_t)image->height * 3);
     if (rgb && !noc_image_to_srgb8(image, &params, rgb))
         return rgb;
@@ -35,7 +40,8 @@ static noc_status read_picture(const panels *p, size_t config, uint8_t **picture
     const lab_session *lab = p->lab;
     const lab_run *run = lab_find_run(lab, p->camera, config, 0);
     *picture = NULL;
-    char *path = lab_picture_path(lab, run->key, lab_shown_mode(lab->spec, p->camera), p->frame);
+    char *path = p->light ? lab_light_path(lab, run->key, p->frame)
+                          : lab_picture_path(lab, run->key, lab_shown_mode(lab->spec, p->camera), p->frame);
     if (!path)
         return NOC_ERR_MEMORY;
     noc_status status = NOC_OK;
@@ -46,7 +52,7 @@ static noc_status read_picture(const panels *p, size_t config, uint8_t **picture
     } else if (image && (image->width != p->width || image->height != p->height)) {
         status = noc_error(lab->log, NOC_ERR_FORMAT, "%s: it is of another size; delete it", path);
     } else if (image) {
-        *picture = display(image, p->ev100, lab->log);
+        *picture = display(image, p->ev100, p->light, lab->log);
         status = *picture ? NOC_OK : NOC_ERR_MEMORY;
     }
     noc_image_destroy(image);
@@ -104,7 +110,7 @@ static noc_status choose(const panels *p, lab_crop *crop) {
 static noc_status fill_sheet(const panels *p, lab_sheet *sheet) {
     const lab_spec *spec = p->lab->spec;
     noc_status status = NOC_OK;
-    lab_add_panel(sheet, 0, p->reference, p->width, "reference");
+    lab_add_panel(sheet, 0, p->light ? NULL : p->reference, p->width, "reference");
     for (size_t i = 0; i < spec->config_count && !status; i++) {
         uint8_t *picture = NULL;
         status = read_picture(p, i, &picture);
@@ -119,13 +125,14 @@ static noc_status write_sheet(const panels *p, const lab_crop *crop) {
     const lab_spec *spec = p->lab->spec;
     char name[LAB_TEXT];
     lab_sheet sheet = { .rgb = NULL };
-    char *path = noc_format("%s/%s", p->lab->folder, lab_sheet_name(spec, p->camera, p->frame, name));
+    char *path = noc_format("%s/%s", p->lab->folder, lab_sheet_name(spec, p->camera, p->frame, p->light, name));
     noc_status status =
         path ? lab_start_sheet(&sheet, crop, &spec->cameras[p->camera], spec->config_count + 1, path, p->lab->log)
              : noc_no_memory(p->lab->log, name);
     status = status ? status : fill_sheet(p, &sheet);
     const char *keys[] = { "picture" },
-               *values[] = { "the reference, and one frame of each configuration, row by row" };
+               *values[] = { p->light ? "the light that each pixel chose, by each configuration, row by row"
+                                      : "the reference, and one frame of each configuration, row by row" };
     if (!status)
         status = noc_image_write_srgb8(sheet.rgb, sheet.width, sheet.height, path, &(noc_image_meta){ 1, keys, values },
                                        p->lab->log);
@@ -138,8 +145,8 @@ noc_status lab_make_crops(lab_session *lab, size_t camera) {
     const lab_spec *spec = lab->spec;
     lab_crop *crop = &lab->crops[camera];
     double ev100 = noc_image_auto_ev100(lab->reference);
-    panels p = { lab, camera, 0, spec->width, spec->height, ev100, NULL };
-    p.reference = isnan(ev100) ? NULL : display(lab->reference, ev100, lab->log);
+    panels p = { lab, camera, 0, spec->width, spec->height, ev100, NULL, false };
+    p.reference = isnan(ev100) ? NULL : display(lab->reference, ev100, false, lab->log);
     if (!p.reference)
         return isnan(ev100) ? noc_no_memory(lab->log, "pictures") : NOC_ERR_MEMORY;
     *crop = (lab_crop){
@@ -157,7 +164,11 @@ noc_status lab_make_crops(lab_session *lab, size_t camera) {
             break;
         crop->scale = crop->width < PANEL ? PANEL / crop->width : 1;
         crop->columns = spec->config_count + 1 < MOST_COLUMNS ? (int)spec->config_count + 1 : MOST_COLUMNS;
-        status = write_sheet(&p, crop);
+        for (int light = 0; light <= spec->light_view && !status; light++) {
+            p.light = light;
+            status = write_sheet(&p, crop);
+        }
+        p.light = false;
     }
     free(p.reference);
     return status;

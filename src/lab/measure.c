@@ -31,10 +31,11 @@ static noc_status take(const lab_loop *loop, noc_view *view, int frame, bool *la
     *last = false;
     if (!loop->rendered(loop->user, frame, &stats, &lights, last) && !loop->sum)
         return NOC_OK;
-    noc_image *image = noc_view_image(view);
+    noc_status status = loop->seen ? loop->seen(loop->user, frame, view) : NOC_OK;
+    noc_image *image = status ? NULL : noc_view_image(view);
     if (!image)
-        return NOC_ERR_MEMORY; /* reported by the view */
-    noc_status status = loop->take(loop->user, frame, false, image);
+        return status ? status : NOC_ERR_MEMORY; /* reported by the view */
+    status = loop->take(loop->user, frame, false, image);
     if (!status && loop->sum) {
         average(loop->sum, frame, image);
         status = loop->take(loop->user, frame, true, image);

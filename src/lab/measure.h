@@ -19,7 +19,10 @@ typedef struct lab_loop {
     /* A frame is there. *last: no other is rendered. Returns whether its picture is wanted; where the mean is, each is.
      */
     bool (*rendered)(void *user, int frame, const noc_frame_stats *stats, const noc_light_stats *lights, bool *last);
+    /* The view of a frame whose picture is wanted, before `take`. May be NULL. */
+    noc_status (*seen)(void *user, int frame, noc_view *view);
     /* The picture of the frame, and then the mean of all so far. */
+
     noc_status (*take)(void *user, int frame, bool mean, const noc_image *image);
 } lab_loop;
 

@@ -21,6 +21,7 @@ static const noc_option spec_rows[] = {
     { "repetitions", "Spec", NOC_OPTION_INT, offsetof(S, repetitions), 1, 1000, NULL, "", "" },
     { "accumulate", "Spec", NOC_OPTION_CHOICE, offsetof(S, accumulate), 0, 0, "false|true|both", "", "" },
     { "seed", "Spec", NOC_OPTION_UINT, offsetof(S, seed), 0, 4294960000.0, NULL, "", "" },
+    { "light-view", "Spec", NOC_OPTION_BOOL, offsetof(S, light_view), 0, 1, NULL, "", "" },
     { "figure", "Spec", NOC_OPTION_CHOICE, offsetof(S, figure), 0, 0, "relmse-clamped|relmse|rmse8", "", "" },
     { "all-pixels", "Spec", NOC_OPTION_BOOL, offsetof(S, all_pixels), 0, 1, NULL, "", "" },
     { "ceiling", "Spec", NOC_OPTION_REAL, offsetof(S, ceiling), 1e-6, 1e9, NULL, "cd/m2", "" },

@@ -165,11 +165,13 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
     for (size_t i = 0; i < frames; i++) {
         int frame = motion ? motion : spec->shown[i];
         char many[64], name[LAB_TEXT];
-        lab_sheet_name(spec, camera, frame, name);
+        lab_sheet_name(spec, camera, frame, false, name);
         if (mode == LAB_ACCUMULATED)
             noc_fprintf(out, "\n![Mean of %s](%s)\n", noc_text_many(many, (uint64_t)frame, "frame"), name);
         else
             noc_fprintf(out, "\n![Frame %d](%s)\n", frame, name);
+        if (spec->light_view)
+            noc_fprintf(out, "\n![Lights of frame %d](%s)\n", frame, lab_sheet_name(spec, camera, frame, true, name));
     }
     bool mean = mode == LAB_ACCUMULATED;
     noc_fprintf(out, "\nShown %s ", frames > 1 ? "are" : "is");
@@ -201,6 +203,8 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
         noc_fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
     }
     fputs(". All have the reference's exposure.\n", out);
+    if (spec->light_view)
+        fputs("\nLights are those that the pixels' reservoirs hold, each in its own colour; grey: none.\n", out);
 }
 
 /* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ

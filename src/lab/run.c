@@ -100,6 +100,27 @@ static noc_status keep_picture(const measuring *m, int mode, int frame, const no
     return status;
 }
 
+/* The light that each pixel's reservoir holds, in the light's colour: of frames that are shown. */
+static noc_status keep_light(void *user, int frame, noc_view *view) {
+    const measuring *m = user;
+    const lab_session *lab = m->lab;
+    if (m->run->repetition || !lab_shows(lab->spec, m->run->camera, frame))
+        return NOC_OK;
+    const noc_channel_params params = { .part = NOC_CHANNEL_PICTURE };
+    const char *keys[] = { "configuration" }, *values[] = { lab->spec->configs[m->run->config].name };
+    uint8_t *rgb = NULL;
+    int width, height;
+    char *path = lab_light_path(lab, m->run->key, frame);
+    noc_channel *light = path ? noc_view_aov(view, NOC_AOV_LIGHT) : NULL;
+    noc_status status = light ? noc_channel_to_srgb8(light, &params, &rgb, &width, &height, lab->log) : NOC_ERR_MEMORY;
+    if (!status)
+        status = noc_image_write_srgb8(rgb, width, height, path, &(noc_image_meta){ 1, keys, values }, lab->log);
+    noc_channel_destroy(light);
+    free(rgb);
+    free(path);
+    return status;
+}
+
 /* Time so far. A row that is there already tells it better: those after it were measured on from there. */
 static void add_times(measuring *m, int frame, const noc_frame_stats *stats) {
     m->cpu += stats->cpu_seconds;
@@ -182,10 +203,14 @@ static noc_status frames_missing(const lab_session *lab, const lab_run *run, int
         if (!lab_shows(spec, run->camera, frame))
             continue;
         char *picture = lab_picture_path(lab, run->key, mode, frame);
-        if (!picture)
+        char *light = spec->light_view && picture ? lab_light_path(lab, run->key, frame) : NULL;
+        if (!picture || (spec->light_view && !light)) {
+            free(picture);
             return NOC_ERR_MEMORY;
-        if (access(picture, R_OK))
+        }
+        if (access(picture, R_OK) || (light && access(light, R_OK)))
             *last = frame;
+        free(light);
         free(picture);
     }
     return NOC_OK;
@@ -209,7 +234,9 @@ noc_status lab_measure_run(lab_session *lab, lab_run *run) {
                                        .camera = camera_at,
                                        .progress = frame_progress,
                                        .rendered = rendered,
+                                       .seen = lab->spec->light_view ? keep_light : NULL,
                                        .take = take });
+
     noc_device_destroy(device);
     return status;
 }

@@ -10,6 +10,8 @@ noc_render_params lab_params_of(const lab_session *lab, const lab_run *run) {
     noc_render_params p = lab->spec->configs[run->config].params;
     p.seed = lab->spec->seed + (uint32_t)run->repetition;
     p.accumulate = false; /* the mean is made here, so that one run gives both curves */
+    if (lab->spec->light_view && !run->repetition)
+        p.aovs |= 1u << NOC_AOV_LIGHT;
     return p;
 }
 
@@ -39,10 +41,17 @@ char *lab_picture_path(const lab_session *lab, const char *key, int mode, int fr
     return path;
 }
 
-const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, char text[LAB_TEXT]) {
+char *lab_light_path(const lab_session *lab, const char *key, int frame) {
+    char *path = noc_format("%s/pictures/%s-light%d.png", lab->folder, key, frame);
+    if (!path)
+        noc_no_memory(lab->log, "pictures");
+    return path;
+}
+
+const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool light, char text[LAB_TEXT]) {
     char slug[LAB_TEXT];
-    bool mean = lab_shown_mode(spec, camera) == LAB_ACCUMULATED;
-    noc_snprintf(text, LAB_TEXT, "%.300s-%s%d.png", lab_slug(spec, camera, slug), mean ? "mean" : "frame", frame);
+    const char *kind = light ? "light" : lab_shown_mode(spec, camera) == LAB_ACCUMULATED ? "mean" : "frame";
+    noc_snprintf(text, LAB_TEXT, "%.300s-%s%d.png", lab_slug(spec, camera, slug), kind, frame);
     return text;
 }
 

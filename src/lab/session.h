@@ -131,8 +131,9 @@ noc_render_params lab_params_of(const lab_session *lab, const lab_run *run);
 /* frame from 1; made where it is not there. NULL after reporting that memory was refused. */
 lab_row *lab_row_of(const lab_session *lab, lab_run *run, int mode, int frame);
 char *lab_picture_path(const lab_session *lab, const char *key, int mode, int frame); /* free() it; NULL likewise */
-/* Of one shown frame's sheet; writes into text and returns it. */
-const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, char text[LAB_TEXT]);
+char *lab_light_path(const lab_session *lab, const char *key, int frame); /* of the frame's light view; likewise */
+/* Of one shown frame's sheet, or of its light view's; writes into text and returns it. */
+const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool light, char text[LAB_TEXT]);
 
 void lab_note(const lab_session *lab, const char *fmt, ...) NOC_PRINTF(2, 3);
 bool lab_go_on(lab_session *lab, const noc_lab_progress *progress); /* false from then on where it was to end */

@@ -91,6 +91,7 @@ typedef struct noc_lab_spec {
     size_t measured_count;
     int *shown; /* frames whose pictures are shown beside the reference, rising */
     size_t shown_count;
+    bool light_view; /* the shown frames' lights (NOC_AOV_LIGHT) are shown, too */
     int accumulate;
     uint32_t seed; /* of the first repetition */
     int figure;

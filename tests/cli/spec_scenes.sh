@@ -1,5 +1,5 @@
 #!/bin/sh
-# Scenes of specs: those left out where data is absent, what the report says they hold.
+# Scenes of specs: those left out where data is absent, what the report says they hold, the light view.
 . "$(dirname "$0")/lib.sh"
 export XDG_CACHE_HOME="$work/home"
 
@@ -65,4 +65,47 @@ for name, path in ("city", "info.json"), ("built-in", "builtin.json"):
 assert int(rows["built-in"][5]) > 1 and int(rows["city"][0]) >= 1, rows
 CHECK
 result $? "the report says what scenes hold, as info does"
+
+# ---- the light view ----
+spec light.json "$one" '"light-view": true, "shown": [1], "crop": [0, 0, 32, 18],'
+run experiment light.json -o light
+grep -q '^!\[Lights of frame 1\](1-one-own-light1.png)$' light/report.md &&
+    grep -q "^Lights are those that the pixels' reservoirs hold, each in its own colour; grey: none.$" light/report.md
+result $? "the light view of shown frames is in the report"
+cat >sheet.py <<'CHECK'
+import glob, struct, zlib
+def read(path):
+    data, at, body = open(path, "rb").read(), 8, b""
+    while at < len(data):
+        n, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            w, h = struct.unpack(">II", data[at + 8:at + 16])
+        elif kind == b"IDAT":
+            body += data[at + 8:at + 8 + n]
+        at += n + 12
+    raw, rows, last = zlib.decompress(body), [], bytearray(3 * w)
+    for y in range(h):
+        f, line = raw[y * (3 * w + 1)], bytearray(raw[y * (3 * w + 1) + 1:(y + 1) * (3 * w + 1)])
+        for i in range(3 * w):
+            a, b, c = (line[i - 3] if i > 2 else 0), last[i], (last[i - 3] if i > 2 else 0)
+            p = a + b - c
+            paeth = min((a, b, c), key=lambda v: abs(p - v))
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[f]) & 255
+        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(w)])
+        last = line
+    return rows
+sheet = read("light/1-one-own-light1.png")
+pictures = [read(path) for path in glob.glob("light/pictures/*-light1.png")]
+assert len(pictures) == 2
+panels = [[[sheet[22 + 10 * y][left + 10 * x] for x in range(32)] for y in range(18)] for left in (324, 648)]
+assert sorted(pictures) == sorted(panels)
+assert {c for row in sheet[22:] for c in row[:320]} == {(40, 40, 40)}, "the reference has none"
+# One light alone: its colour, and grey where nothing was chosen.
+assert len({c for p in pictures for row in p for c in row}) == 2
+CHECK
+python3 sheet.py; result $? "a panel a configuration, in the colours of the view"
+rm light/pictures/*-light1.png
+run experiment light.json -o light
+test $status = 0 && grep -q ': 2 rows, 0 of them made now' out && python3 sheet.py
+result $? "views that were removed are made again, without new rows"
 finish
