@@ -9,6 +9,7 @@ static const noc_option path_rows[] = {
     { "dolly", "Path", NOC_OPTION_TEXT, offsetof(C, dolly_text), 0, 0, NULL, "", "" },
     { "orbit", "Path", NOC_OPTION_REAL, offsetof(C, orbit), -360, 360, NULL, "degrees", "" },
     { "pan", "Path", NOC_OPTION_REAL, offsetof(C, pan), -360, 360, NULL, "degrees", "" },
+    { "fps", "Path", NOC_OPTION_REAL, offsetof(C, fps), 0.001, 1e6, NULL, "", "" },
     { "cut", "Path", NOC_OPTION_INT, offsetof(C, cut), 1, LAB_FRAMES, NULL, "", "" },
     { NULL },
 };

@@ -123,6 +123,9 @@ void lab_name_run(const lab_session *lab, lab_run *run) {
         noc_camera camera = lab_camera_at(lab, run->camera, frame);
         hash_camera(&hash, &camera);
     }
+    double fps = spec->cameras[run->camera].fps;
+    if (fps > 0)
+        hash_bytes(&hash, &fps, sizeof(fps));
     hash_bytes(&hash, &run->repetition, sizeof(run->repetition));
     hash_bytes(&hash, &lab->params.threads, sizeof(lab->params.threads));
     hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling));

@@ -51,9 +51,10 @@ noc_status lab_run_loop(const lab_loop *loop) {
     noc_status status = view ? NOC_OK : NOC_ERR_MEMORY;
     frame_now now = { loop->progress, loop->user, 1 };
     for (bool last = false; !status && !last; now.frame++) {
-        noc_camera camera = loop->camera(loop->user, now.frame);
-        status = tell(&now, "", 0) ? noc_view_render(view, &camera, &params, &(noc_progress){ tell, &now })
+        noc_camera camera;
+        status = tell(&now, "", 0) ? loop->prepare(loop->user, now.frame, &camera)
                                    : noc_cancelled(loop->log, "lab: cancelled");
+        status = status ? status : noc_view_render(view, &camera, &params, &(noc_progress){ tell, &now });
         status = status ? status : take(loop, view, now.frame, &last);
     }
     noc_view_destroy(view);
@@ -69,7 +70,10 @@ typedef struct measuring {
     noc_log *log;
 } measuring;
 
-static noc_camera same_camera(void *user, int frame) { return *((const measuring *)user)->camera; }
+static noc_status same_camera(void *user, int frame, noc_camera *camera) {
+    *camera = *((const measuring *)user)->camera;
+    return NOC_OK;
+}
 
 static bool measure_progress(void *user, int frame, double done) {
     const noc_lab_measure_params *p = ((const measuring *)user)->params;
@@ -124,7 +128,7 @@ noc_status noc_lab_measure(noc_device *device, const noc_scene *scene, const noc
                                                   .sum = sum,
                                                   .log = log,
                                                   .user = &m,
-                                                  .camera = same_camera,
+                                                  .prepare = same_camera,
                                                   .progress = measure_progress,
                                                   .rendered = measure_rendered,
                                                   .take = measure_take });

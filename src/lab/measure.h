@@ -14,7 +14,8 @@ typedef struct lab_loop {
     double *sum;              /* room for 3 numbers a pixel; NULL: the mean of the frames is not wanted */
     noc_log *log;
     void *user;
-    noc_camera (*camera)(void *user, int frame); /* frames count from 1 */
+    /* Sets the camera of a frame, and edits the scene for it. Frames count from 1. */
+    noc_status (*prepare)(void *user, int frame, noc_camera *camera);
     bool (*progress)(void *user, int frame, double done);
     /* A frame is there. *last: no other is rendered. Returns whether its picture is wanted; where the mean is, each is.
      */
@@ -22,7 +23,6 @@ typedef struct lab_loop {
     /* The view of a frame whose picture is wanted, before `take`. May be NULL. */
     noc_status (*seen)(void *user, int frame, noc_view *view);
     /* The picture of the frame, and then the mean of all so far. */
-
     noc_status (*take)(void *user, int frame, bool mean, const noc_image *image);
 } lab_loop;
 

@@ -7,9 +7,23 @@ noc_status lab_place_cameras(lab_session *lab, size_t index) {
     const lab_camera *camera = &lab->spec->cameras[index];
     double aspect = (double)lab->spec->width / lab->spec->height;
     noc_status status = noc_scene_place_camera(lab->scene, &camera->pose, aspect, &lab->camera, NULL);
+    if (camera->fps > 0 && !lab->holdings[camera->scene].info.cars) {
+        char view[LAB_TEXT];
+        noc_warn(lab->log, "%s: fps has no effect: the scene has no cars that drive",
+                 lab_view_name(lab->spec, index, view));
+    }
     lab->before = lab->camera;
     return status || !camera->cut ? status
                                   : noc_scene_place_camera(lab->scene, &camera->before, aspect, &lab->before, NULL);
+}
+
+noc_status lab_place_cars(lab_session *lab, size_t index, int frame) {
+    const lab_camera *path = &lab->spec->cameras[index];
+    if (!(path->fps > 0))
+        return NOC_OK;
+    double arrival = lab->holdings[path->scene].info.time;
+    noc_status status = noc_scene_set_time(lab->scene, arrival - (path->frames - frame) / path->fps);
+    return status ? status : noc_scene_commit(lab->scene);
 }
 
 /* v turned about the vertical, counter-clockwise from above. */

@@ -271,7 +271,6 @@ static noc_status read_lists(S *spec, json_t *root, const lab_config *shared) {
     noc_status status = read_scenes(spec, scene, scenes, cameras);
     char place[64];
     for (size_t i = 0; !status && i < json_array_size(configs); i++) {
-
         noc_snprintf(place, sizeof(place), "configurations[%zu]", i);
         status = lab_read_config(spec, place, json_array_get(configs, i), shared, i);
     }

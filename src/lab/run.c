@@ -167,9 +167,10 @@ static noc_status take(void *user, int frame, bool mean, const noc_image *image)
     return status || !m->rows ? status : add_row(m, mode, frame, image);
 }
 
-static noc_camera camera_at(void *user, int frame) {
+static noc_status prepare(void *user, int frame, noc_camera *camera) {
     const measuring *m = user;
-    return lab_camera_at(m->lab, m->run->camera, frame);
+    *camera = lab_camera_at(m->lab, m->run->camera, frame);
+    return lab_place_cars(m->lab, m->run->camera, frame);
 }
 
 /* The last frame whose row misses; 0: none. */
@@ -231,12 +232,11 @@ noc_status lab_measure_run(lab_session *lab, lab_run *run) {
                                        .sum = mean ? lab->sum : NULL,
                                        .log = lab->log,
                                        .user = &m,
-                                       .camera = camera_at,
+                                       .prepare = prepare,
                                        .progress = frame_progress,
                                        .rendered = rendered,
                                        .seen = lab->spec->light_view ? keep_light : NULL,
                                        .take = take });
-
     noc_device_destroy(device);
     return status;
 }

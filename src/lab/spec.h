@@ -56,7 +56,8 @@ typedef struct lab_camera {
     double dolly[3]; /* travelled in the motion: right, forward, up, m */
     /* turned about the target and about the eye in the motion, degrees, counter-clockwise from above */
     double orbit, pan;
-    int cut; /* so many of the first frames show what `before` sees */
+    double fps; /* cars drive 1 / fps s from frame to frame, and arrive in the last; 0: they stand */
+    int cut;    /* so many of the first frames show what `before` sees */
     noc_camera_params before;
     lab_inset insets[LAB_INSETS];
     int inset_count;
@@ -109,7 +110,6 @@ typedef struct noc_lab_spec {
     lab_config *configs;
     size_t scene_count, absent_count, camera_count, config_count;
     noc_arena arena; /* of all that the others point at */
-
 } lab_spec;
 
 bool lab_among(const char *const *names, const char *name); /* NULL-ended; may be NULL */

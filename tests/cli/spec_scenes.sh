@@ -1,5 +1,6 @@
 #!/bin/sh
-# Scenes of specs: those left out where data is absent, what the report says they hold, the light view.
+# Scenes of specs: those left out where data is absent, what the report says they hold, cars that drive, the light
+# view.
 . "$(dirname "$0")/lib.sh"
 export XDG_CACHE_HOME="$work/home"
 
@@ -65,6 +66,35 @@ for name, path in ("city", "info.json"), ("built-in", "builtin.json"):
 assert int(rows["built-in"][5]) > 1 and int(rows["city"][0]) >= 1, rows
 CHECK
 result $? "the report says what scenes hold, as info does"
+
+# ---- cars ----
+# Cars arrive in the last frame where cars at rest are: a method without history makes the same picture of both, and
+# one with history does not.
+for cars in rest drive; do
+    fps=
+    test $cars = drive && fps=', "fps": 30'
+    spec $cars.json "{ \"name\": \"cars\", \"inputs\": [\"builtin:city\"], \"city-size\": 200, \"traffic\": true,
+        \"cameras\": [ { \"name\": \"street\", \"view\": \"street\", \"path\": { \"frames\": 4$fps } } ] }"
+    sed -i 's/32x18/96x54/' $cars.json
+    run experiment $cars.json -o $cars
+    cp err $cars.err
+done
+python3 - <<'CHECK'
+import csv
+rows = {(cars, r["configuration"]): r for cars in ("rest", "drive")
+        for r in csv.DictReader(open(cars + "/results.csv"))}
+same = lambda name: all(rows["rest", name][c] == rows["drive", name][c] for c in ("rmse8", "relmse", "rmse8_all"))
+assert len(rows) == 4 and {r["frame"] for r in rows.values()} == {"4"}
+assert same("ris") and not same("restir"), rows
+CHECK
+result $? "cars of a path arrive where the load has them, and were elsewhere before" "$(cat rest.err drive.err)"
+sed 's/"traffic": true/"traffic": false/' drive.json >none.json
+run experiment none.json -o none
+test $status = 0 && test "$(cat err)" = \
+    "nocturne: warning: cars, street: fps has no effect: the scene has no cars that drive"
+result $? "fps without cars is warned of"
+sed 's/"fps": 30/"fps": 0/' drive.json >wrong.json
+expect "no frames a second" 2 'wrong.json: scenes\[0\]: cameras\[0\]: path: "?fps' experiment wrong.json -o w
 
 # ---- the light view ----
 spec light.json "$one" '"light-view": true, "shown": [1], "crop": [0, 0, 32, 18],'

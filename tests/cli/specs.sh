@@ -83,7 +83,7 @@ sed 's/"shown": \[\]/"shown": [6]/' far.json >wrong.json
 expect "and one to be shown" 2 'wrong.json: shown: frame 6 is after the last, 5' experiment wrong.json -o w
 sed 's/"view": "own"/"view": "own", "path": { "frames": 2, "speed": 1 }/' far.json >wrong.json
 expect "an unknown option like no other" 2 \
-    'wrong.json: cameras\[0\]: path: no option "speed"; there are frames, dolly, orbit, pan, cut, before$' \
+    'wrong.json: cameras\[0\]: path: no option "speed"; there are frames, dolly, orbit, pan, fps, cut, before$' \
     experiment wrong.json -o w
 sed 's/"view": "own"/&, "path": { "frames": 3, "cut": 2, "before": { &, "path": { "frames": 2, "pan": 1 } } }/' \
     moving.json >wrong.json
