@@ -120,7 +120,7 @@ typedef struct noc_render_params {
     int rays;              /* reference: shadow rays a pixel and frame, 1..1024 */
     /* reuse (restir only) */
     bool temporal, spatial;
-    int neighbours; /* k, 0..16 */
+    int neighbours; /* k, 0..20 */
     double radius;  /* pixels, 1..64 */
     int passes;     /* spatial passes, 1..4 */
     double history; /* cap of M as a multiple of a frame's candidates, 0..1000 */

@@ -43,11 +43,11 @@ FN reservoir neighbour_resv_of(CTX u32 i);
 #define REUSE_DRAWS 2
 
 /* The choice of neighbour i, and of the pixel's own sample. dim: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass. */
-FN real reuse_choice(u32 key, u32 dim, int i) { return rng(key, dim + KU(3u * U32(i) + 2u)); }
-FN real reuse_own_choice(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS))); }
+FN real reuse_choice(u32 key, u32 dim, int i) { return rng(key, dim + KU(DIM_NEIGHBOUR(i) + 2u)); }
+FN real reuse_own_choice(u32 key, u32 dim) { return rng(key, dim + KU(DIM_OWN)); }
 /* Which neighbours are drawn, and which one is asked about the pixel's own sample. */
-FN real reuse_draws_start(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS) + 1u)); }
-FN real reuse_partner_choice(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS) + 2u)); }
+FN real reuse_draws_start(u32 key, u32 dim) { return rng(key, dim + KU(DIM_OWN + 1u)); }
+FN real reuse_partner_choice(u32 key, u32 dim) { return rng(key, dim + KU(DIM_OWN + 2u)); }
 
 /* Neighbour i's target at the pixel. */
 FN real reuse_offered(CTX surf s, reservoir q) {

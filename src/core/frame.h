@@ -32,7 +32,7 @@ typedef struct frame_camera frame_camera;
 #define FRAME_MAP_LIGHTS 32u  /* a map lights, in the sky's place */
 #define FRAME_MATTE 64u       /* surfaces without gloss */
 
-#define MAX_NEIGHBOURS 16
+#define MAX_NEIGHBOURS 20
 #define SKY_RAYS 4          /* of a pixel that nothing but the sky lights */
 #define REFERENCE_CHUNK 32u /* lights that the reference method sums at once */
 

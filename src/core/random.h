@@ -48,9 +48,14 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 #define DIM_ENVIRONMENT 6u /* of frame 0: every frame goes on from there */
 #define DIM_TEMPORAL 8u    /* as DIM_SPATIAL, but for the places */
 #define DIM_RAYS 16u       /* reference only: no reuse beside it */
-#define DIM_SPATIAL 64u    /* + 64 a pass, + 3 a neighbour: 2 for its place, 1 for its choice; core/reuse.h */
+#define DIM_SPATIAL 64u    /* + 64 a pass, + those below */
 #define DIM_CANDIDATE 512u /* + 3 a candidate */
 #define DIM_PICK 4096u     /* + 1 a candidate: pickers that need a second number */
+
+/* Of a combination (core/combine.h): three of neighbour i, 2 for its place and 1 for its choice, and three of the pixel
+ * itself, which come after those of 16 neighbours. All are below 64 for 20 neighbours. */
+#define DIM_OWN 48u
+#define DIM_NEIGHBOUR(i) (3u * U32(i) + (U32(i) < 16u ? 0u : 3u))
 
 /* Of pixels that choose among the entries of a list; they draw no other candidates. */
 #define DIM_LIST_PLACE 512u  /* and the next one: where on their lights entries are looked at */

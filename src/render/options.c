@@ -89,7 +89,7 @@ static const noc_option render_options[] = {
     BOOL(P, temporal, "temporal", "Reuse (restir)",
          "reuse samples of the previous frame (a still is cleaner without)", RESTIR, MEAN),
     BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels", RESTIR, MEAN),
-    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)", SPATIAL, MEAN),
+    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 20, "", "neighbours a pixel and pass (k)", SPATIAL, MEAN),
     REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from", SPATIAL, MEAN),
     INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes", SPATIAL, MEAN),
     REAL(P, history, "history", "Reuse (restir)", 0, 1000, "",

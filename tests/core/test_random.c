@@ -1,5 +1,6 @@
 /* core/random.h and core/warp.h: even, independent, exact. */
 #include "core_test.h"
+#include "core/frame.h"
 #include "core/random.h"
 #include "core/warp.h"
 
@@ -183,10 +184,22 @@ static void test_cosine_hemisphere(void **state) {
     assert_true(mean_off(&c1, 2.0 / 3) < 4 && mean_off(&c2, 0.5) < 4 && mean_off(&across, 0) < 4);
 }
 
+/* Numbers of a combination: no two of one pass share a dimension, and none reaches into the next pass. */
+static void test_neighbours(void **state) {
+    (void)state;
+    uint64_t used = 0;
+    for (uint32_t i = 0; i < 3 * (MAX_NEIGHBOURS + 1); i++) {
+        uint32_t dim = i < 3 ? DIM_OWN + i : DIM_NEIGHBOUR(i / 3 - 1) + i % 3;
+        assert_true(dim < 64 && !(used >> dim & 1));
+        used |= (uint64_t)1 << dim;
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_uniform_and_independent),
         cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_neighbours),
         cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_scale),
         cmocka_unit_test(test_circle),

@@ -89,7 +89,7 @@ static noc_render_params variant(int i) {
     case 6:
         p.bias = NOC_BIAS_PAIRWISE;
         p.passes = 2;
-        p.neighbours = 16;
+        p.neighbours = 20;
         p.radius = 30;
         break;
     case 7:

@@ -174,7 +174,7 @@ static bool fetch_neighbours(const stage_run *run, combining *c) {
     uint32_t some = 0;
     c->k = (int)run->ctx.frame->neighbours;
     for (uint32_t i = 0; surfaces && i < run->ctx.frame->neighbours; i++) {
-        v3 offset = neighbour_offset(&run->ctx, key, c->dim + 3u * i);
+        v3 offset = neighbour_offset(&run->ctx, key, c->dim + DIM_NEIGHBOUR(i));
         run->k->neighbours(&run->ctx, g, r, c->g, surfaces, c->x + (int)offset.x, c->y + (int)offset.y, &c->n[i]);
         some |= c->n[i].lanes;
     }
