@@ -40,6 +40,12 @@ FN v3 camera_direction(camera c, real px, real py) {
     return add3(c.forward, add3(mul3(c.right, x), mul3(c.up, y)));
 }
 
+/* The same of pixel (x, y) in this frame: its ray's, from FRAME.camera.eye. */
+FN v3 frame_direction(CTX u32 x, u32 y) {
+    return camera_direction(camera_of(FRAME.camera), to_real(x) + K(FRAME.camera.jitter[0]),
+                            to_real(y) + K(FRAME.camera.jitter[1]));
+}
+
 /* Where a point is seen: pixel coordinates in x, y and depth along the view in z (not in front of the camera: z <= 0).
  */
 FN v3 camera_project(camera c, v3 p) {

@@ -28,6 +28,28 @@ FN receiver receiver_none(void) {
     return r;
 }
 
+/* A receiver that is given. eye: what its depth is measured from. */
+FN receiver receiver_given(v3 p, v3 n, u32 material, v3 eye) {
+    receiver r;
+    r.p = p;
+    r.n = n;
+    v3 d = sub3(p, eye);
+    r.depth = sqrt_(dot3(d, d));
+    r.material = material;
+    r.light = KU(NO_LIGHT);
+    return r;
+}
+
+FN receiver receiver_sel(mask c, receiver a, receiver b) {
+    receiver r;
+    r.p = sel3(c, a.p, b.p);
+    r.n = sel3(c, a.n, b.n);
+    r.depth = sel(c, a.depth, b.depth);
+    r.material = selu(c, a.material, b.material);
+    r.light = selu(c, a.light, b.light);
+    return r;
+}
+
 FN mask receives(receiver r) { return r.material != KU(NO_SURFACE); }
 
 #endif

@@ -121,9 +121,9 @@ FN real sky_lux(CTX surf s, v3 way, real share) {
 
 /* The sky behind pixel (x, y). */
 FN v3 sky_behind(CTX u32 x, u32 y) {
-    v3 d = camera_direction(camera_of(FRAME.camera), to_real(x) + K(FRAME.camera.jitter[0]),
-                            to_real(y) + K(FRAME.camera.jitter[1]));
-    d = mul3(d, K(1.0f) / sqrt_(dot3(d, d)));
+    v3 d = frame_direction(PASS x, y);
+    EXACT real inv = K(1.0f) / sqrt_(dot3(d, d));
+    d = mul3(d, inv);
     v3 behind;
     if ((FRAME.flags & FRAME_ENVIRONMENT) != 0u)
         behind = environment_backdrop(PASS d);

@@ -7,6 +7,7 @@
 #define CORE_SURFACE_H
 
 #include "core/light.h"
+#include "core/texel.h"
 
 struct surf {
     v3 p;
@@ -17,9 +18,46 @@ struct surf {
     real alpha; /* GGX alpha, roughness squared */
 };
 
+/* What a surface is made of. */
+struct surf_material {
+    v3 albedo;
+    real f0;
+    real alpha;
+};
+
 #ifndef CORE_GLSL
 typedef struct surf surf;
+typedef struct surf_material surf_material;
 #endif
+
+/* From memory, the same material in every lane. */
+FN surf_material material_of_record(material_record r) {
+    surf_material m;
+    m.albedo = splat3(r.albedo);
+    m.f0 = K(r.f0);
+    m.alpha = K(r.alpha);
+    return m;
+}
+
+/* A receiver's surface as seen from eye; n = 0 where there is no receiver, and nothing is reflected. texel: its albedo
+ * where that is not the material's (core/texel.h), or 0. matte: without gloss (FRAME_MATTE). */
+FN surf surf_of_receiver(v3 p, v3 n, v3 eye, surf_material m, u32 texel, b1 matte) {
+    surf s;
+    s.p = p;
+    s.n = n;
+    v3 d = sub3(eye, p);
+    EXACT real inv = K(1.0f) / sqrt_(max_(dot3(d, d), K(1e-20f)));
+    s.wo = mul3(d, inv);
+    s.albedo = m.albedo;
+    mask there = texel != KU(0u);
+    if (ANY(there))
+        s.albedo = sel3(there, texel_albedo(texel), s.albedo);
+    s.f0 = m.f0;
+    if (matte)
+        s.f0 = K(0.0f);
+    s.alpha = m.alpha;
+    return s;
+}
 
 /* (1 - x)^5. */
 FN real schlick_weight(real x) {

@@ -4,12 +4,12 @@
  *
  * Textures lie in one array of words. A texture begins with a head: its levels and from bit 8 on what is beyond its
  * edges, then for each level the place of its first texel and its width, from bit 16 on its height. Then come the
- * texels, rows from the top. A texel is an albedo: the root of each channel in 10 bits, red in the lowest ones, and
- * TEXEL_THERE. Includers supply texel_load. */
+ * texels (core/texel.h), rows from the top. Includers supply texel_load. */
 #ifndef CORE_TEXTURE_H
 #define CORE_TEXTURE_H
 
 #include "core/hit.h"
+#include "core/texel.h"
 
 /* Where a triangle's corners are in an image: corner by corner in x, y and z. */
 struct image_corners {
@@ -31,21 +31,6 @@ FN u32 texel_load(CTX u32 place);
 #else
 uint texel_load(uint place);
 #endif
-
-/* Albedo within 0..1. */
-FN u32 texel_pack(v3 a) {
-    EXACT real r = sqrt_(a.x) * K(1023.0f) + K(0.5f);
-    EXACT real g = sqrt_(a.y) * K(1023.0f) + K(0.5f);
-    EXACT real b = sqrt_(a.z) * K(1023.0f) + K(0.5f);
-    return to_u32(r) | shl(to_u32(g), 10) | shl(to_u32(b), 20) | KU(TEXEL_THERE);
-}
-
-FN v3 texel_albedo(u32 texel) {
-    EXACT real r = to_real(texel & KU(1023u)) * K(1.0f / 1023.0f);
-    EXACT real g = to_real(shr(texel, 10) & KU(1023u)) * K(1.0f / 1023.0f);
-    EXACT real b = to_real(shr(texel, 20) & KU(1023u)) * K(1.0f / 1023.0f);
-    return V3(r * r, g * g, b * b);
-}
 
 /* Within 0.09 of the logarithm to base 2, and without a step; a > 0. */
 FN real rough_log2(real a) {

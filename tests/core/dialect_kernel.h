@@ -11,9 +11,8 @@
 #include "dialect_slots.h"
 
 #define FRAME dialect_frame
-#include "core/camera.h"
-#include "core/light.h"
-#include "core/random.h"
+#include "core/dialect.h"
+#include "core/frame.h"
 
 /* Of the item at hand: what functions of core read that take no item. */
 #if defined(CORE_GLSL)
@@ -31,6 +30,10 @@ static real dialect_weight;
 static u32 dialect_entries;
 static u1 dialect_item_of; /* the tile at hand */
 #endif
+#include "core/camera.h"
+#include "core/light.h"
+#include "core/random.h"
+
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -375,6 +378,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 #include "dialect_lists.h"
 #include "dialect_presampled.h"
 #include "dialect_textures.h"
+#include "dialect_primary.h"
 
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
@@ -396,6 +400,7 @@ FN void dialect_item(CTX u32 item) {
     lists_item(PASS item, key, s);
     presampling(PASS item, key, s);
     textures(PASS item, key);
+    primaries(PASS item, key);
 }
 
 FN void dialect_tile(CTX u1 item) {

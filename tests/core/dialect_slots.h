@@ -15,7 +15,9 @@
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
 #define PRESAMPLED_SLOTS 28 /* dialect_presampled.h */
-#define ITEM_SLOTS (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
+#define PRIMARY_FIRST (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
+#define PRIMARY_SLOTS 22 /* dialect_primary.h */
+#define ITEM_SLOTS (PRIMARY_FIRST + PRIMARY_SLOTS)
 #define TILE_WORDS 3776 /* of memory for a tile */
 
 #endif

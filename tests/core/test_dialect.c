@@ -205,6 +205,17 @@ static const struct {
     { PRESAMPLED_FIRST + 19, "presample_turned" },
     { PRESAMPLED_FIRST + 20, "presample_plain" },
     { PRESAMPLED_FIRST + 21, "ris_presampled" },
+    { PRIMARY_FIRST, "receiver_of_hit, place" },
+    { PRIMARY_FIRST + 3, "receiver_of_hit, normal" },
+    { PRIMARY_FIRST + 6, "receiver_of_hit, depth" },
+    { PRIMARY_FIRST + 7, "light_seen" },
+    { PRIMARY_FIRST + 8, "frame_direction" },
+    { PRIMARY_FIRST + 10, "rays_apart2" },
+    { PRIMARY_FIRST + 11, "placement_scale2" },
+    { PRIMARY_FIRST + 12, "hit_width" },
+    { PRIMARY_FIRST + 13, "hit_texel" },
+    { PRIMARY_FIRST + 14, "surf_of_receiver" },
+    { PRIMARY_FIRST + 21, "receiver_sel" },
 };
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
@@ -224,6 +235,7 @@ static bool holds_integers(int slot) {
            slot == 177 || slot == TEXTURES_FIRST + 7 || slot == TEXTURES_FIRST + 16 || slot == INFLUENCE_FIRST ||
            slot == PRESAMPLED_FIRST + 15 || slot == PRESAMPLED_FIRST + 16 || slot == PRESAMPLED_FIRST + 18 ||
            slot == PRESAMPLED_FIRST + 19 || slot == PRESAMPLED_FIRST + 21 || slot == INFLUENCE_FIRST + 2 ||
+           slot == PRIMARY_FIRST + 7 || slot == PRIMARY_FIRST + 13 || slot == PRIMARY_FIRST + 21 ||
            (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
 }
 

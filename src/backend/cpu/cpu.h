@@ -257,11 +257,9 @@ noc_status noc_cpu_fit_scene(cpu_view *s);
 /* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
  * Counts rays where each block says, and keeps them when recording. */
 void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count);
-/* Nearest hits of camera rays into a block; lanes outside `valid` see nothing.
- * object: of each lane, -1 where there is none; wall: its label, of walls that windows were looked for in, else
- * untouched; instance: NO_INSTANCE; all may be NULL. */
-void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
-                     float *wall, uint32_t *instance);
+/* Traces camera rays and stores the receivers that they find in block `at` of the G-buffer, with their instances, and
+ * their objects and walls for the views that ask for these. Lanes outside `valid` find nothing. */
+void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint32_t valid, size_t at);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
 noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor);
 
@@ -304,8 +302,6 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
 /* Traces rays to the samples of `count` blocks at `at` in the stage's target that are not known to be seen from their
  * own pixels, all in company: those that are left are known to be. */
 void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int count);
-
-void noc_cpu_no_receivers(gblock *g); /* none of its pixels sees anything */
 
 /* The numbers of a block's pixels in the picture. */
 static inline void noc_cpu_pixels(const stage_run *run, const tile_block *b, uint32_t pixel[BLOCK]) {

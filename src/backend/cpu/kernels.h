@@ -217,27 +217,21 @@ typedef struct ray_draw {
     int rays;             /* the block has so many of them, one after the other */
 } ray_draw;
 
-/* Triangles that the lanes of a block have hit: corner, coordinate, lane; and where. */
-typedef struct cornerblock {
-    ALIGNED float at[3][3][BLOCK];
-    float u[BLOCK], v[BLOCK];
-} cornerblock;
-
-/* What the lanes of a block have hit of textures: the texture; each corner's place in its image; how wide a pixel is
- * there along the surface, in the corners' unit. */
-typedef struct imageblock {
-    ALIGNED uint32_t place[BLOCK];
-    float at[3][2][BLOCK]; /* corner, u or v */
-    float width[BLOCK];
-} imageblock;
+/* What the rays of a block have hit: core/primary.h. */
+typedef struct struck_block {
+    uint32_t lanes, placed, textured; /* that hit a triangle; of these on an instance; on a texture */
+    ALIGNED float at[3][3][BLOCK];    /* corner, coordinate */
+    float u[BLOCK], v[BLOCK], t[BLOCK];
+    uint32_t material[BLOCK], light[BLOCK];
+    float transform[12][BLOCK]; /* of `placed` */
+    uint32_t texture[BLOCK];    /* place of its head; of `textured` as the next one */
+    float image[3][2][BLOCK];   /* corner, u or v */
+} struck_block;
 
 typedef struct kernels {
     const char *name;
-    /* Points of hits, and the normals of their triangles; 0 where the corners are one point. */
-    void (*hits)(const cornerblock *c, gblock *g);
-    /* Albedos of `lanes`, from their materials and the textures of these. */
-    void (*texels)(const struct core_context *ctx, const cornerblock *c, const imageblock *image, uint32_t lanes,
-                   gblock *g);
+    /* Receivers of a block's camera rays; none outside h->lanes. */
+    void (*hits)(const struct core_context *ctx, const rayblock *rays, const struck_block *h, gblock *g);
     /* A subset of the candidates that blocks share: m rows, of all lights alike or by power. scratch: 16 m. */
     void (*presample)(const struct core_context *ctx, uint32_t subset, int m, bool by_power, presample_pick1 *scratch,
                       presample_row *out);

@@ -2,43 +2,65 @@
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/headlight.h"
-#include "core/hit.h"
+#include "core/primary.h"
 #include "core/shading.h"
 
-FN v3 corner_load(const cornerblock *c, int corner, int l) {
-    return V3(rload(c->at[corner][0] + l), rload(c->at[corner][1] + l), rload(c->at[corner][2] + l));
+FN v3 corner_load(const struck_block *h, int corner, int l) {
+    return V3(rload(h->at[corner][0] + l), rload(h->at[corner][1] + l), rload(h->at[corner][2] + l));
 }
 
-static void hits(const cornerblock *c, gblock *g) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        corners t = { corner_load(c, 0, l), corner_load(c, 1, l), corner_load(c, 2, l) };
-        v3 p = hit_point(t, rload(c->u + l), rload(c->v + l));
-        v3 n = hit_normal(t);
-        rstore(g->px + l, p.x);
-        rstore(g->py + l, p.y);
-        rstore(g->pz + l, p.z);
-        rstore(g->nx + l, n.x);
-        rstore(g->ny + l, n.y);
-        rstore(g->nz + l, n.z);
-    }
+FN v3 ray_direction(const rayblock *rays, int l) {
+    return V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
 }
 
-static void texels(const struct core_context *ctx, const cornerblock *c, const imageblock *image, uint32_t lanes,
-                   gblock *g) {
+FN ray_hit hit_load(const struck_block *h, const rayblock *rays, int l) {
+    return (ray_hit){ { corner_load(h, 0, l), corner_load(h, 1, l), corner_load(h, 2, l) },
+                      rload(h->u + l),
+                      rload(h->v + l),
+                      rload(h->t + l),
+                      ray_direction(rays, l),
+                      uload(h->material + l),
+                      uload(h->light + l) };
+}
+
+FN placement placement_load(const struck_block *h, int l) {
+    v3 column[4];
+    for (int k = 0; k < 4; k++)
+        column[k] = V3(rload(h->transform[k] + l), rload(h->transform[4 + k] + l), rload(h->transform[8 + k] + l));
+    return (placement){ V3(column[0].x, column[1].x, column[2].x), V3(column[0].y, column[1].y, column[2].y),
+                        V3(column[0].z, column[1].z, column[2].z), column[3] };
+}
+
+/* Albedos of the lanes that see a texture; 0 of others. */
+FN u32 texels_of(CTX const struck_block *h, const rayblock *rays, ray_hit q, v3 n, placement m, int l) {
+    mask on = mload(h->textured, l);
+    if (!ANY(on))
+        return KU(0u);
+    image_corners at = {
+        V3(rload(h->image[0][0] + l), rload(h->image[1][0] + l), rload(h->image[2][0] + l)),
+        V3(rload(h->image[0][1] + l), rload(h->image[1][1] + l), rload(h->image[2][1] + l)),
+    };
+    v3 first = V3(K(rays->d[0][0]), K(rays->d[1][0]), K(rays->d[2][0]));
+    v3 below = V3(K(rays->d[0][4]), K(rays->d[1][4]), K(rays->d[2][4]));
+    real scale2 = sel(mload(h->placed, l), placement_scale2(m), K(1.0f));
+    real width = hit_width(q, n, rays_apart2(first, below), scale2);
+    v3 albedo = materials_load(ctx->materials, selu(on, q.material, KU(0u))).albedo;
+    return selu(on, hit_texel(ctx, q, uload(h->texture + l), at, width, albedo), KU(0u));
+}
+
+static void hits(const struct core_context *ctx, const rayblock *rays, const struck_block *h, gblock *g) {
     for (int l = 0; l < BLOCK; l += LANES) {
-        mask on = mload(lanes, l);
-        if (!ANY(on))
-            continue;
-        corners t = { corner_load(c, 0, l), corner_load(c, 1, l), corner_load(c, 2, l) };
-        image_corners at;
-        at.u = V3(rload(image->at[0][0] + l), rload(image->at[1][0] + l), rload(image->at[2][0] + l));
-        at.v = V3(rload(image->at[0][1] + l), rload(image->at[1][1] + l), rload(image->at[2][1] + l));
-        real u = image_at(at.u, rload(c->u + l), rload(c->v + l)), v = image_at(at.v, rload(c->u + l), rload(c->v + l));
-        u32 place = uload(image->place + l), m = selu(on, uload(g->material + l), KU(0u));
-        v3 a = texture_albedo(ctx, place, u, v, texture_level(ctx, place, t, at, rload(image->width + l)));
-        v3 of = V3(material_field(ctx->materials, m, 0), material_field(ctx->materials, m, 1),
-                   material_field(ctx->materials, m, 2));
-        ustore(g->texel + l, selu(on, texel_pack(tint3(a, of)), KU(0u)));
+        mask on = mload(h->lanes, l), placed = mload(h->placed, l);
+        receiver r = receiver_none();
+        u32 texel = KU(0u);
+        if (ANY(on)) {
+            ray_hit q = hit_load(h, rays, l);
+            placement m = placement_load(h, l);
+            r = receiver_sel(on, receiver_of_hit(ctx, q, placed, m), r);
+            texel = texels_of(ctx, h, rays, q, r.n, m, l);
+        }
+        receiver_store(g, l, r);
+        ustore(g->texel + l, texel);
     }
 }
 
@@ -156,7 +178,6 @@ static void headlight(const struct core_context *ctx, const gblock *g, uint32_t 
 const kernels KERNELS = {
     .name = KERNELS_NAME,
     .hits = hits,
-    .texels = texels,
     .presample = presample_lights,
     .subset_of = subset_of,
     .presampled = presampled,

@@ -126,20 +126,16 @@ FN real material_field(const noc_material_record *base, u32 index, int field) {
 }
 
 /* What surfaces are made of. Most blocks see one material, which then is loaded once. */
-typedef struct material_lanes {
-    v3 albedo;
-    real f0, alpha;
-} material_lanes;
-FN material_lanes materials_load(const noc_material_record *base, u32 index) {
+FN surf_material materials_load(const noc_material_record *base, u32 index) {
     uint32_t at[LANES];
     ustore(at, index);
-    if (!ANY(index != KU(at[0]))) {
-        const noc_material_record *m = base + at[0];
-        return (material_lanes){ V3(K(m->albedo[0]), K(m->albedo[1]), K(m->albedo[2])), K(m->f0), K(m->alpha) };
-    }
-    return (material_lanes){ V3(material_field(base, index, 0), material_field(base, index, 1),
-                                material_field(base, index, 2)),
-                             material_field(base, index, 3), material_field(base, index, 7) };
+    if (!ANY(index != KU(at[0])))
+        return material_of_record(base[at[0]]);
+    surf_material m;
+    m.albedo = V3(material_field(base, index, 0), material_field(base, index, 1), material_field(base, index, 2));
+    m.f0 = material_field(base, index, 3);
+    m.alpha = material_field(base, index, 7);
+    return m;
 }
 
 FN u32 texel_load(CTX u32 place) {
@@ -176,26 +172,16 @@ FN void receiver_store(gblock *g, int l, receiver r) {
     ustore(g->light + l, r.light);
 }
 
-/* The receiving surfaces, seen from eye. Lanes without a surface get n = 0, and so reflect nothing. */
+/* The receiving surfaces, seen from eye. */
 FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
-    surf s;
-    s.p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
-    s.n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
-    v3 d = sub3(splat3(eye), s.p);
-    s.wo = mul3(d, K(1.0f) / sqrt_(max_(dot3(d, d), K(1e-20f))));
-    u32 m = uload(g->material + l);
+    v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
+    v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
+    u32 m = uload(g->material + l), texel = KU(0u);
     m = selu(m == KU(NO_SURFACE), KU(0u), m);
-    material_lanes of = materials_load(ctx->materials, m);
-    s.albedo = of.albedo;
-    if (ctx->texels) {
-        u32 texel = uload(g->texel + l);
-        mask there = texel != KU(0u);
-        if (ANY(there))
-            s.albedo = sel3(there, texel_albedo(texel), s.albedo);
-    }
-    s.f0 = ctx->frame->flags & FRAME_MATTE ? K(0.0f) : of.f0;
-    s.alpha = of.alpha;
-    return s;
+    if (ctx->texels)
+        texel = uload(g->texel + l);
+    return surf_of_receiver(p, n, splat3(eye), materials_load(ctx->materials, m), texel,
+                            (ctx->frame->flags & FRAME_MATTE) != 0);
 }
 
 FN reservoir reservoir_load(const rblock *b, int l) {

@@ -51,30 +51,13 @@ void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int coun
     }
 }
 
-void noc_cpu_no_receivers(gblock *g) {
-    for (int l = 0; l < BLOCK; l++)
-        receiver_store(g, l, receiver_none());
-    memset(g->texel, 0, sizeof(g->texel));
-}
-
 static void primary_block(stage_run *run, worker *w, int bx, int by) {
-    const frame_camera *c = &run->ctx.frame->camera;
-    frame_buffers *b = &run->s->b;
-    camera cam = camera_of(*c);
+    const frame_buffers *b = &run->s->b;
+    const v3 eye = splat3(run->ctx.frame->camera.eye);
     rayblock rays;
-    for (int l = 0; l < BLOCK; l++) {
-        v3 d = camera_direction(cam, (float)(bx * BLOCK_SIDE + (l & 3)) + c->jitter[0],
-                                (float)(by * BLOCK_SIDE + (l >> 2)) + c->jitter[1]);
-        for (int k = 0; k < 3; k++)
-            rays.o[k][l] = c->eye[k];
-        rays.d[0][l] = d.x;
-        rays.d[1][l] = d.y;
-        rays.d[2][l] = d.z;
-    }
-    float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT], (*walls)[BLOCK] = b->aovs.made[NOC_AOV_CLASS];
-    size_t at = block_at(b, bx, by);
-    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[run->frame->gbuffer][at],
-                    objects ? objects[at] : NULL, walls ? walls[at] : NULL, b->instance ? b->instance[at] : NULL);
+    for (int l = 0; l < BLOCK; l++)
+        ray_store(&rays, l, eye, frame_direction(&run->ctx, lane_x(bx * BLOCK_SIDE, l), lane_y(by * BLOCK_SIDE, l)));
+    noc_cpu_primary(run, w, &rays, lanes_inside(b, bx, by), block_at(b, bx, by));
 }
 
 /* Receivers that are given: no instance shows them. */
@@ -83,19 +66,15 @@ static void place_block(const stage_run *run, int bx, int by) {
     const float *eye = run->ctx.frame->camera.eye;
     size_t at = block_at(b, bx, by);
     gblock *g = &b->g[run->frame->gbuffer][at];
-    noc_cpu_no_receivers(g);
+    for (int l = 0; l < BLOCK; l++)
+        receiver_store(g, l, receiver_none());
+    memset(g->texel, 0, sizeof(g->texel));
     for (int l = 0; b->instance && l < BLOCK; l++)
         b->instance[at][l] = NO_INSTANCE;
     for (uint32_t bits = lanes_inside(b, bx, by); bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits), x = bx * BLOCK_SIDE + (l & 3), y = by * BLOCK_SIDE + (l >> 2);
         const noc_receiver *r = &run->frame->receivers[(size_t)y * (size_t)b->width + (size_t)x];
-        receiver to = receiver_none();
-        to.p = V3(r->p[0], r->p[1], r->p[2]);
-        to.n = V3(r->n[0], r->n[1], r->n[2]);
-        v3 d = sub3(to.p, V3(eye[0], eye[1], eye[2]));
-        to.depth = sqrt_(dot3(d, d));
-        to.material = r->material;
-        receiver_store(g, l, to);
+        receiver_store(g, l, receiver_given(splat3(r->p), splat3(r->n), r->material, splat3(eye)));
     }
 }
 

@@ -44,97 +44,41 @@ void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_bl
     }
 }
 
-/* A point and a normal of a model, where the instance has them. */
-static void place_hit(const float m[12], float p[3], float n[3]) {
-    float q[3], t[3], length = 0;
-    for (int k = 0; k < 3; k++) {
-        q[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
-        t[k] = m[4 * k] * n[0] + m[4 * k + 1] * n[1] + m[4 * k + 2] * n[2];
-        length += t[k] * t[k];
-    }
-    for (int k = 0; k < 3; k++) {
-        p[k] = q[k];
-        n[k] = t[k] / sqrtf(length);
-    }
+static void gather_image(const noc_scene *scene, uint32_t triangle, int l, struck_block *out) {
+    float at[3][2];
+    if (!noc_scene_image_corners(scene, triangle, at))
+        return;
+    out->texture[l] = scene->textures.data[scene->materials.data[out->material[l]].texture - 1].place;
+    for (int corner = 0; corner < 3; corner++)
+        for (int k = 0; k < 2; k++)
+            out->image[corner][k][l] = at[corner][k];
+    out->textured |= 1u << l;
 }
 
-static void gather_corners(const noc_scene *scene, const hitblock *h, cornerblock *out) {
-    for (int l = 0; l < BLOCK; l++) {
-        const uint32_t *v = h->triangle[l] != NO_HIT ? scene->indices.data + 3 * (size_t)h->triangle[l] : NULL;
-        for (int corner = 0; corner < 3; corner++)
-            for (int k = 0; k < 3; k++)
-                out->at[corner][k][l] = v ? scene->positions.data[3 * (size_t)v[corner] + (size_t)k] : 0;
-        out->u[l] = v ? h->u[l] : 0;
-        out->v[l] = v ? h->v[l] : 0;
-    }
+static void gather_instance(const noc_scene_instance *in, int l, struck_block *out) {
+    for (int k = 0; k < 12; k++)
+        out->transform[k][l] = in->transform[k];
+    if (out->light[l] != NOC_NO_LIGHT)
+        out->light[l] = in->lights[out->light[l]];
+    out->placed |= 1u << l;
 }
 
-/* Does an emitter show light to this side? What is dark, as the back of a one-sided one or a window where nobody is, is
- * a surface like others. */
-static bool shows(const noc_light_record *l, float side) {
-    return (side > 0 || l->flags & LIGHT_TWO_SIDED) && (l->e[0] > 0 || l->e[1] > 0 || l->e[2] > 0);
-}
-
-/* The receiver of lane l, whose point and normal are those of its triangle; its normal is turned to the viewer. */
-static void end_hit(const noc_scene *scene, const rayblock *rays, const hitblock *h, int l, gblock *g) {
-    uint32_t prim = h->triangle[l], light = scene->triangle_light.data[prim];
-    float p[3] = { g->px[l], g->py[l], g->pz[l] }, n[3] = { g->nx[l], g->ny[l], g->nz[l] }, toward = 0, d2 = 0;
-    if (h->instance[l] != NO_INSTANCE) {
-        const noc_scene_instance *in = &scene->instances.data[h->instance[l]];
-        place_hit(in->transform, p, n);
-        light = light != NOC_NO_LIGHT ? in->lights[light] : light;
-    }
-    for (int k = 0; k < 3; k++) {
-        toward += n[k] * rays->d[k][l];
-        d2 += rays->d[k][l] * rays->d[k][l];
-    }
-    float side = toward < 0 ? 1 : -1;
-    g->px[l] = p[0];
-    g->py[l] = p[1];
-    g->pz[l] = p[2];
-    g->nx[l] = side * n[0];
-    g->ny[l] = side * n[1];
-    g->nz[l] = side * n[2];
-    g->depth[l] = h->t[l] * sqrtf(d2);
-    g->material[l] = scene->triangle_material.data[prim];
-    if (light != NOC_NO_LIGHT && !shows(&scene->lights.data[light], side))
-        light = NOC_NO_LIGHT;
-    g->light[l] = light;
-}
-
-/* What the block sees of textures, as its albedos. Rays of two rows are as far from each other as a pixel is high. */
-static void look_up(const cpu_view *s, const rayblock *rays, const hitblock *h, const cornerblock *corners, gblock *g) {
-    const noc_scene *scene = s->scene;
-    struct core_context ctx = { .materials = scene->material_records.data, .texels = scene->texels.data };
-    imageblock image = { 0 };
-    uint32_t lanes = 0;
-    for (int l = 0; l < BLOCK; l++) {
-        if (h->triangle[l] == NO_HIT)
-            continue;
-        float at[3][2];
-        if (!noc_scene_image_corners(scene, h->triangle[l], at))
-            continue;
-        float apart = 0, toward = 0, d2 = 0, scale2 = 1;
-        const float n[3] = { g->nx[l], g->ny[l], g->nz[l] };
-        for (int k = 0; k < 3; k++) {
-            float a = rays->d[k][4] - rays->d[k][0];
-            apart += a * a;
-            toward += n[k] * rays->d[k][l];
-            d2 += rays->d[k][l] * rays->d[k][l];
-        }
-        if (h->instance[l] != NO_INSTANCE) {
-            const float *m = scene->instances.data[h->instance[l]].transform;
-            scale2 = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
-        }
-        image.place[l] = scene->textures.data[scene->materials.data[g->material[l]].texture - 1].place;
-        image.width[l] = h->t[l] * sqrtf(apart * d2 / scale2) / NOC_MAX(fabsf(toward), 0.01f * sqrtf(d2));
-        for (int corner = 0; corner < 3; corner++)
-            for (int k = 0; k < 2; k++)
-                image.at[corner][k][l] = at[corner][k];
-        lanes |= 1u << l;
-    }
-    if (lanes)
-        s->kernels->texels(&ctx, corners, &image, lanes, g);
+static void gather_hit(const noc_scene *scene, const hitblock *h, int l, struck_block *out) {
+    uint32_t triangle = h->triangle[l];
+    const uint32_t *v = scene->indices.data + 3 * (size_t)triangle;
+    for (int corner = 0; corner < 3; corner++)
+        for (int k = 0; k < 3; k++)
+            out->at[corner][k][l] = scene->positions.data[3 * (size_t)v[corner] + (size_t)k];
+    out->u[l] = h->u[l];
+    out->v[l] = h->v[l];
+    out->t[l] = h->t[l];
+    out->material[l] = scene->triangle_material.data[triangle];
+    out->light[l] = scene->triangle_light.data[triangle];
+    out->lanes |= 1u << l;
+    if (h->instance[l] != NO_INSTANCE)
+        gather_instance(&scene->instances.data[h->instance[l]], l, out);
+    if (scene->texels.len)
+        gather_image(scene, triangle, l, out);
 }
 
 static void closest(const cpu_world *world, noc_ray_world in, const rayblock *rays, float far, uint32_t valid,
@@ -142,29 +86,31 @@ static void closest(const cpu_world *world, noc_ray_world in, const rayblock *ra
     world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, hits);
 }
 
-void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
-                     float *wall, uint32_t *instance) {
+/* Views of what lane l sees, where they are asked for. */
+static void note_object(const cpu_view *s, uint32_t triangle, size_t at, int l) {
+    float(*objects)[BLOCK] = s->b.aovs.made[NOC_AOV_OBJECT], (*walls)[BLOCK] = s->b.aovs.made[NOC_AOV_CLASS];
+    if (objects)
+        objects[at][l] = (float)noc_scene_object_of(s->scene, triangle);
+    noc_wall_verdict verdict = walls ? noc_scene_wall(s->scene, triangle) : NOC_WALL_UNSEEN;
+    if (verdict)
+        walls[at][l] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);
+}
+
+void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint32_t valid, size_t at) {
+    cpu_view *s = run->s;
     hitblock h;
-    noc_cpu_no_receivers(g);
+    struck_block found = { 0 };
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
     keep(s, w, rays, NULL, valid, 1, true);
     closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);
-    if (instance)
-        memcpy(instance, h.instance, sizeof(h.instance));
-    cornerblock corners;
-    gather_corners(s->scene, &h, &corners);
-    s->kernels->hits(&corners, g);
+    if (s->b.instance)
+        memcpy(s->b.instance[at], h.instance, sizeof(h.instance));
     for (int l = 0; l < BLOCK; l++)
         if (h.triangle[l] != NO_HIT) {
-            end_hit(s->scene, rays, &h, l, g);
-            if (object)
-                object[l] = (float)noc_scene_object_of(s->scene, h.triangle[l]);
-            noc_wall_verdict verdict = wall ? noc_scene_wall(s->scene, h.triangle[l]) : NOC_WALL_UNSEEN;
-            if (verdict)
-                wall[l] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);
+            gather_hit(s->scene, &h, l, &found);
+            note_object(s, h.triangle[l], at, l);
         }
-    if (s->scene->texels.len)
-        look_up(s, rays, &h, &corners, g);
+    run->k->hits(&run->ctx, rays, &found, &s->b.g[run->frame->gbuffer][at]);
 }
 
 void noc_cpu_probe(void *user, noc_probes *p) {
