@@ -54,6 +54,13 @@ noc_status noc_vk_finish_flights(vk_view *v) {
 
 /* ---- recording ---- */
 
+static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
+    return (vk_facts){ .constants = &frame->constants,
+                       .history = frame->constants.flags & FRAME_HISTORY,
+                       .lights = v->scene->lights.len > 0,
+                       .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
+}
+
 /* The addresses that are the same for all steps of a frame. */
 static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
     const vk_world *w = v->world;
@@ -98,6 +105,9 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,
         .subsets = v->subsets,
+        .tree_root = v->sources.tree ? v->sources.tree->root : 0,
+        .tree_depth = v->sources.tree ? (uint32_t)v->sources.tree->depth : 0,
+        .sky_turns = facts_of(v, frame).sky ? SKY_RAYS : 0,
         .alias_count = v->sources.alias ? v->sources.alias->count : 0,
         .fresh = all,
         .share = all ? 1 : (float)(1.0 / (double)(frame->accumulated + 1)),
@@ -172,12 +182,6 @@ static noc_status record(vk_view *v, const noc_frame *frame, vk_step *steps, int
     return status;
 }
 
-static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
-    return (vk_facts){ .constants = &frame->constants,
-                       .history = frame->history,
-                       .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
-}
-
 /* ---- a frame ---- */
 
 static noc_status refuse(const vk_view *v, const noc_frame *frame) {
@@ -191,6 +195,11 @@ static noc_status refuse(const vk_view *v, const noc_frame *frame) {
         return noc_error(v->log, NOC_ERR_UNSUPPORTED,
                          "vulkan: no candidates \"influence\" on this backend yet (there are uniform and power)");
     return NOC_OK;
+}
+
+/* Returns true if blocks share the plan's candidates. */
+static bool shares(const noc_plan *plan) {
+    return plan->draws && (plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER);
 }
 
 /* What the frame needs of the world and of the view, before anything is recorded. */
@@ -208,7 +217,9 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = noc_light_set_map(v->world->lights_set, &v->map_light);
     if (status == NOC_OK)
         status = noc_vk_world_fill_sources(v->world, &v->sources, v->map_light);
-    return status == NOC_OK ? noc_vk_view_fit(v, noc_vk_schedule_slots(frame->plan, &facts)) : status;
+    if (status == NOC_OK)
+        status = noc_vk_view_fit(v, noc_vk_schedule_slots(frame->plan, &facts));
+    return status == NOC_OK && shares(frame->plan) ? noc_vk_view_fit_samples(v, frame->plan->candidate_count) : status;
 }
 
 static noc_status begin(vk_view *v, const noc_frame *frame) {

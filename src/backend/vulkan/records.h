@@ -65,6 +65,9 @@ struct vk_instance_record {
     WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
     WORD(uint32_t, subsets)                                                                                            \
     WORD(uint32_t, alias_count)                                                                                        \
+    WORD(uint32_t, tree_root)                                                                                          \
+    WORD(uint32_t, tree_depth)                                                                                         \
+    WORD(uint32_t, sky_turns) /* rays to the sky at most */                                                            \
     WORD(uint32_t, dimension) /* of reuse: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */                                 \
     WORD(uint32_t, first)     /* ray slot, or chunk, at which this dispatch begins */                                  \
     WORD(uint32_t, fresh)     /* 1: the mean begins with this frame */                                                 \

@@ -42,20 +42,100 @@ static void primary(scheduling *s) {
     add(s, VK_SHADER_primary_use, R(HITS) | R(RAYS), R(SURFACES));
 }
 
+/* Candidates that blocks share are drawn once a frame, before the pass that chooses among them. */
+static void candidates_shared(scheduling *s) {
+    bool by_power = s->pass == NOC_PASS_CANDIDATES_POWER;
+    add(s, by_power ? VK_SHADER_presample_power : VK_SHADER_presample_uniform, 0, R(SAMPLES))->domain =
+        VK_DOMAIN_SUBSETS;
+    add(s, VK_SHADER_candidates_shared, R(SURFACES) | R(SAMPLES), set_bit(s->stage->target));
+}
+
+static void candidates_tree(scheduling *s) {
+    add(s, VK_SHADER_candidates_tree, R(SURFACES), set_bit(s->stage->target));
+}
+
+/* Asks of the target's samples whose visibility is not known. */
+static void ask_samples(scheduling *s) {
+    add(s, VK_SHADER_resolve_ask, R(SURFACES) | set_bit(s->stage->target), R(RAYS) | R(ANSWERS));
+    trace(s, 1, false);
+}
+
+static void resolve(scheduling *s) {
+    uint32_t target = set_bit(s->stage->target);
+    ask_samples(s);
+    add(s, VK_SHADER_resolve_use, R(ANSWERS) | target, target);
+}
+
+/* A pixel's combination with `neighbours` others; reads: what it looks at. */
+static void combine(scheduling *s, vk_shader ask, vk_shader use, uint32_t reads, uint32_t dimension, int neighbours,
+                    bool past) {
+    const frame_constants *c = s->facts->constants;
+    bool rays = c->flags & FRAME_BIAS_RAYS;
+    if (rays) {
+        vk_step *step = add(s, ask, reads, R(RAYS) | R(ANSWERS));
+        step->dimension = dimension;
+        step->slots = c->bias == BIAS_PAIRWISE ? 1 : neighbours;
+        trace(s, step->slots, past);
+    }
+    add(s, use, reads | (rays ? R(ANSWERS) : 0), set_bit(s->stage->target))->dimension = dimension;
+    if (s->stage->resolve_visibility)
+        resolve(s);
+}
+
+static void temporal(scheduling *s) {
+    uint32_t reads = R(SURFACES) | R(PREVIOUS) | set_bit(s->stage->source) | set_bit(s->stage->target);
+    if (s->facts->history)
+        combine(s, VK_SHADER_temporal_ask, VK_SHADER_temporal_use, reads, DIM_TEMPORAL, 1, s->facts->past);
+}
+
+static void spatial(scheduling *s) {
+    combine(s, VK_SHADER_spatial_ask, VK_SHADER_spatial_use, R(SURFACES) | set_bit(s->stage->source),
+            DIM_SPATIAL + 64u * (uint32_t)s->stage->round, (int)s->facts->constants->neighbours, false);
+}
+
 static void emitters(scheduling *s) { add(s, VK_SHADER_emitters, R(SURFACES), R(COLOUR)); }
 
+static void shade(scheduling *s) {
+    bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
+    if (rays)
+        ask_samples(s);
+    add(s, VK_SHADER_shade_use, R(SURFACES) | R(COLOUR) | set_bit(s->stage->target) | (rays ? R(ANSWERS) : 0),
+        R(COLOUR));
+}
+
 static void headlight(scheduling *s) { add(s, VK_SHADER_headlight, R(SURFACES) | R(COLOUR), R(COLOUR)); }
+
+/* Its rays go one after the other, so that they need no more room than others. */
+static void sky(scheduling *s) {
+    for (uint32_t i = 0; i < (s->facts->sky ? SKY_RAYS : 1); i++) {
+        add(s, VK_SHADER_sky_ask, R(SURFACES) | R(COLOUR) | R(ANSWERS), R(COLOUR) | R(RAYS) | R(ANSWERS))->first = i;
+        if (!s->facts->sky)
+            return;
+        trace(s, 1, false);
+        add(s, VK_SHADER_sky_use, R(SURFACES) | R(COLOUR) | R(RAYS) | R(ANSWERS), R(COLOUR));
+    }
+}
 
 int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_step *steps) {
     static void (*const passes[NOC_PASS_COUNT])(scheduling *) = {
         [NOC_PASS_PRIMARY] = primary,
+        [NOC_PASS_CANDIDATES_UNIFORM] = candidates_shared,
+        [NOC_PASS_CANDIDATES_POWER] = candidates_shared,
+        [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_tree,
+        [NOC_PASS_VISIBILITY] = resolve,
+        [NOC_PASS_TEMPORAL] = temporal,
+        [NOC_PASS_SPATIAL] = spatial,
         [NOC_PASS_EMITTERS] = emitters,
+        [NOC_PASS_SHADE] = shade,
         [NOC_PASS_HEADLIGHT] = headlight,
+        [NOC_PASS_SKY] = sky,
     };
     scheduling s = { .plan = plan, .stage = stage, .facts = facts, .steps = steps };
     for (int i = 0; i < stage->count; i++) {
         s.pass = stage->passes[i];
-        if (passes[s.pass])
+        bool without_lights = s.pass == NOC_PASS_PRIMARY || s.pass == NOC_PASS_EMITTERS || s.pass == NOC_PASS_SKY ||
+                              s.pass == NOC_PASS_HEADLIGHT;
+        if (passes[s.pass] && (facts->lights || without_lights))
             passes[s.pass](&s);
     }
     return s.count;

@@ -48,8 +48,9 @@ typedef struct vk_step {
 typedef struct vk_facts {
     const frame_constants *constants;
     bool history; /* reservoirs of the frame before can be reused */
-    bool moved;   /* what they were traced against is the past scene */
+    bool past;    /* they were made with rays against the past scene */
     bool sky;     /* the sky, or a map, lights */
+    bool lights;  /* the scene has some */
 } vk_facts;
 
 enum { VK_STAGE_STEPS = 128 };

@@ -8,8 +8,21 @@
     TRACE(trace_occlusion)                                                                                             \
     COMPUTE(primary_ask)                                                                                               \
     COMPUTE(primary_use)                                                                                               \
+    COMPUTE(presample_uniform)                                                                                         \
+    COMPUTE(presample_power)                                                                                           \
+    COMPUTE(candidates_shared)                                                                                         \
+    COMPUTE(candidates_tree)                                                                                           \
+    COMPUTE(resolve_ask)                                                                                               \
+    COMPUTE(resolve_use)                                                                                               \
+    COMPUTE(temporal_ask)                                                                                              \
+    COMPUTE(temporal_use)                                                                                              \
+    COMPUTE(spatial_ask)                                                                                               \
+    COMPUTE(spatial_use)                                                                                               \
     COMPUTE(emitters)                                                                                                  \
+    COMPUTE(shade_use)                                                                                                 \
     COMPUTE(headlight)                                                                                                 \
+    COMPUTE(sky_ask)                                                                                                   \
+    COMPUTE(sky_use)                                                                                                   \
     COMPUTE(mean)
 
 #define VK_SHADER_NAME(name) VK_SHADER_##name,

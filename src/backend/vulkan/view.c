@@ -1,5 +1,6 @@
 /* A view: the buffers of its picture on the device, and the picture that is read from them. */
 #include "backend/vulkan/vulkan.h"
+#include "core/presample_limits.h"
 
 /* Bytes a pixel of each kind of buffer, by the records that shaders use. */
 enum {
@@ -102,6 +103,14 @@ noc_status noc_vk_view_fit(vk_view *v, int slots) {
     if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)
         status = make(v, 4, &b->instance);
     return status;
+}
+
+noc_status noc_vk_view_fit_samples(vk_view *v, int draws) {
+    enum { ROW_BYTES = 17 * 4 * BLOCK }; /* sample_row of the shaders */
+    v->subsets = presample_subsets((u1)draws, v->b.blocks_x * v->b.blocks_y);
+    if (v->samples.bytes)
+        return NOC_OK;
+    return noc_vk_make_buffer(v->device, PRESAMPLES / BLOCK * ROW_BYTES, 0, VK_PLACE_DEVICE, "candidates", &v->samples);
 }
 
 /* ---- views ---- */

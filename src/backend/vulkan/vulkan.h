@@ -261,6 +261,8 @@ size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
 /* Room for so many rays a pixel, and for instances where the scene has some. */
 noc_status noc_vk_view_fit(vk_view *v, int slots);
+/* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
+noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
 noc_status noc_vk_read_picture(void *view, noc_image *image);
 
 /* frame.c */

@@ -239,6 +239,11 @@ static noc_status fill_alias(vk_world *w, vk_array *a, const noc_alias *alias) {
     return fill(w, a, alias->slots, bytes, 0, bytes, 0, "the alias table");
 }
 
+static noc_status fill_tree(vk_world *w, const noc_tree *tree) {
+    size_t bytes = tree->lights > 1 ? ((size_t)tree->lights - 1) * sizeof(*tree->pairs) : 0;
+    return fill(w, &w->tree, tree->pairs, bytes, 0, bytes, 0, "the light tree");
+}
+
 noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map) {
     const vk_sources_key key = { w->seen.commits, sources->alias, sources->tree, map };
     noc_status status = NOC_OK;
@@ -246,6 +251,8 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
         return NOC_OK;
     if (sources->alias && sources->alias->count)
         status = fill_alias(w, &w->alias, sources->alias);
+    if (status == NOC_OK && sources->tree)
+        status = fill_tree(w, sources->tree);
     if (status == NOC_OK && map)
         status = fill_alias(w, &w->environment_slots, map->texels);
     if (status == NOC_OK && map) {

@@ -1,0 +1,23 @@
+#version 460
+/* Each pixel's reservoir, of the candidates of its block's subset. */
+#extension GL_GOOGLE_include_directive : require
+#include "bridge.glsl"
+#include "pixel.glsl"
+#include "core/shading.h"
+#include "surfaces.glsl"
+#include "presample.glsl"
+
+void main() {
+    if (!in_grid())
+        return;
+    place p = my_place();
+    reservoir q = reservoir_empty();
+    if (receives(receiver_at(HERE.surfaces, p.block, p.lane))) {
+        row_ = high_u32(presample_key(FRAME.seed, p.block, FRAME.index, 1u), HERE.subsets) * HERE.draws;
+        lane_ = p.lane;
+        float xi = rng(key_at(p, FRAME.index), DIM_CANDIDATE);
+        q = ris_presampled(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
+    }
+    reservoir_put(HERE.target, p.block, p.lane, q);
+    HERE.target_visible.at[p.slot] = 0u;
+}

@@ -1,0 +1,21 @@
+#version 460
+/* The light of each pixel's sample, where nothing blocks it. */
+#extension GL_GOOGLE_include_directive : require
+#include "bridge.glsl"
+#include "pixel.glsl"
+#include "core/shading.h"
+#include "surfaces.glsl"
+
+void main() {
+    if (!in_grid())
+        return;
+    place p = my_place();
+    reservoir q = reservoir_at(HERE.target, p.block, p.lane);
+    bool on = q.w > 0.0;
+    if (on && (FRAME.flags & FRAME_FINAL_RAY) != 0u)
+        on = HERE.answers.at[p.slot] != VK_ANSWER_WANTED;
+    if (!on)
+        return;
+    vec3 light = sample_shade(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), q, light_load(q.light));
+    colour_put(HERE.colour, p, add_colour(colour_at(HERE.colour, p), light, p.slot));
+}
