@@ -35,9 +35,12 @@ FN camera camera_of(frame_camera f) {
 
 /* Unnormalised direction through a place in the picture. */
 FN v3 camera_direction(camera c, real px, real py) {
-    real x = px / c.width * K(2.0f) - K(1.0f);
-    real y = K(1.0f) - py / c.height * K(2.0f);
-    return add3(c.forward, add3(mul3(c.right, x), mul3(c.up, y)));
+    EXACT real x = px / c.width * K(2.0f) - K(1.0f);
+    EXACT real y = K(1.0f) - py / c.height * K(2.0f);
+    EXACT real dx = c.forward.x + (c.right.x * x + c.up.x * y);
+    EXACT real dy = c.forward.y + (c.right.y * x + c.up.y * y);
+    EXACT real dz = c.forward.z + (c.right.z * x + c.up.z * y);
+    return V3(dx, dy, dz);
 }
 
 /* The same of pixel (x, y) in this frame: its ray's, from FRAME.camera.eye. */
@@ -51,10 +54,12 @@ FN v3 frame_direction(CTX u32 x, u32 y) {
 FN v3 camera_project(camera c, v3 p) {
     v3 d = sub3(p, c.eye);
     real z = dot3(d, c.forward);
-    real inv = K(1.0f) / sel(z > K(0.0f), z, K(1.0f));
-    real x = dot3(d, c.right) * inv * c.inv_right2;
-    real y = dot3(d, c.up) * inv * c.inv_up2;
-    return V3((x + K(1.0f)) * K(0.5f) * c.width, (K(1.0f) - y) * K(0.5f) * c.height, z);
+    EXACT real inv = K(1.0f) / sel(z > K(0.0f), z, K(1.0f));
+    EXACT real x = dot3(d, c.right) * inv * c.inv_right2;
+    EXACT real y = dot3(d, c.up) * inv * c.inv_up2;
+    EXACT real px = (x + K(1.0f)) * K(0.5f) * c.width;
+    EXACT real py = (K(1.0f) - y) * K(0.5f) * c.height;
+    return V3(px, py, z);
 }
 
 #endif

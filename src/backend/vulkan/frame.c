@@ -170,12 +170,45 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     return NOC_OK;
 }
 
+static VkResult begin_commands(const vk_flight *f) {
+    VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT };
+    return vkBeginCommandBuffer(f->commands, &info);
+}
+
+/* Submits what is recorded. */
+static VkResult submit_commands(const vk_device *d, const vk_flight *f) {
+    VkSubmitInfo info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                          .commandBufferCount = 1,
+                          .pCommandBuffers = &f->commands };
+    noc_vk_barrier(f->commands);
+    VkResult result = vkEndCommandBuffer(f->commands);
+    if (result == VK_SUCCESS)
+        result = vkResetFences(d->device, 1, &f->fence);
+    return result == VK_SUCCESS ? vkQueueSubmit(d->queue, 1, &info, f->fence) : result;
+}
+
+/* Runs what is recorded, has the step answered by the host, and goes on recording. */
+static noc_status answer_step(vk_view *v, const vk_step *step) {
+    const vk_flight *f = &v->flights[v->flight];
+    VkResult result = submit_commands(v->device, f);
+    noc_status status = result == VK_SUCCESS ? noc_vk_wait_idle(v->device) : NOC_OK;
+    if (result == VK_SUCCESS && status == NOC_OK)
+        status = v->answerer->answer(v->answerer->user, step);
+    if (status == NOC_OK)
+        status = noc_vk_submit_upload(v->device);
+    if (result == VK_SUCCESS && status == NOC_OK)
+        result = begin_commands(f);
+    return result == VK_SUCCESS ? status : noc_vk_failed(v->device, result, "recording a frame");
+}
+
 static noc_status record(vk_view *v, const noc_frame *frame, vk_step *steps, int count) {
     vk_binding common = common_binding(v, frame);
     noc_status status = NOC_OK;
     for (int i = 0; i < count && status == NOC_OK; i++) {
         noc_vk_find_wait(&v->hazards, &steps[i]);
-        status = record_step(v, &steps[i], &common);
+        status = v->answerer && steps[i].domain == VK_DOMAIN_RAYS ? answer_step(v, &steps[i])
+                                                                  : record_step(v, &steps[i], &common);
         if (i + 1 == count || steps[i + 1].pass != steps[i].pass)
             mark_time(v, steps[i].pass);
     }
@@ -224,12 +257,10 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
 
 static noc_status begin(vk_view *v, const noc_frame *frame) {
     vk_flight *f = &v->flights[v->flight];
-    VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT };
     noc_status status = prepare(v, frame);
     if (status != NOC_OK)
         return status;
-    VkResult result = vkBeginCommandBuffer(f->commands, &info);
+    VkResult result = begin_commands(f);
     if (result != VK_SUCCESS)
         return noc_vk_failed(v->device, result, "recording a frame");
     memcpy(f->constants.mapped, &frame->constants, sizeof(frame->constants));
@@ -277,15 +308,7 @@ static noc_status submit(vk_view *v) {
     VkBufferCopy copy = { .size = f->counts.bytes };
     noc_vk_barrier(f->commands);
     vkCmdCopyBuffer(f->commands, v->counters.buffer, f->counts.buffer, 1, &copy);
-    noc_vk_barrier(f->commands);
-    VkSubmitInfo info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                          .commandBufferCount = 1,
-                          .pCommandBuffers = &f->commands };
-    VkResult result = vkEndCommandBuffer(f->commands);
-    if (result == VK_SUCCESS)
-        result = vkResetFences(d->device, 1, &f->fence);
-    if (result == VK_SUCCESS)
-        result = vkQueueSubmit(d->queue, 1, &info, f->fence);
+    VkResult result = submit_commands(d, f);
     if (result != VK_SUCCESS)
         return noc_vk_failed(d, result, "rendering");
     f->pending = true;

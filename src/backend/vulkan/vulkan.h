@@ -187,6 +187,13 @@ typedef struct vk_picture {
     size_t bytes;
 } vk_picture;
 
+/* Answers the rays of a step in place of the device, for tests: the steps before have run, and what it writes is there
+ * for those after. The device is locked. */
+typedef struct vk_answerer {
+    noc_status (*answer)(void *user, const vk_step *step);
+    void *user;
+} vk_answerer;
+
 typedef struct vk_view {
     vk_world *world;
     vk_device *device;
@@ -205,6 +212,7 @@ typedef struct vk_view {
     uint32_t subsets;
     uint64_t coverage_frames; /* of the mean */
     noc_frame_stats stats;    /* of finished frames since they were last asked for */
+    const vk_answerer *answerer; /* NULL: the device traces */
     void *host;               /* the CPU backend's view; NULL: no question was asked yet */
 } vk_view;
 
