@@ -162,7 +162,8 @@ static inline size_t differing(const twins *t, const void *cpu, const vk_buffer 
         int x = (int)(block % v->b.blocks_x) * 4 + (int)(l & 3), y = (int)(block / v->b.blocks_x) * 4 + (int)(l >> 2);
         bool off = x < v->b.width && y < v->b.height && host[i] != device[i];
         if (off && getenv("FIELDS") && n < 30)
-            print_message("# pixel %d %d word %zu: %08x %08x  %g %g\n", x, y, i / BLOCK % each, host[i], device[i], *(const float*)&host[i], *(float*)&device[i]);
+            print_message("# pixel %d %d word %zu: %08x %08x  %g %g\n", x, y, i / BLOCK % each, host[i], device[i],
+                          *(const float *)&host[i], *(float *)&device[i]);
         n += off;
     }
     free(device);

@@ -57,7 +57,9 @@ noc_status noc_vk_finish_flights(vk_view *v) {
 static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
     return (vk_facts){ .constants = &frame->constants,
                        .history = frame->constants.flags & FRAME_HISTORY,
-                       .lights = v->scene->lights.len > 0,
+                       .lights = (uint32_t)v->scene->lights.len,
+                       .blocks_x = v->b.blocks_x,
+                       .blocks_y = v->b.blocks_y,
                        .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
 }
 
@@ -98,7 +100,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .answers = b->answers.address,
         .hits = b->hits.address,
         .samples = v->samples.address,
-        .weighed = v->weighed.address,
+        .scratch = v->scratch.address,
         .counters = v->counters.address,
         .light_count = (uint32_t)v->scene->lights.len,
         .slots = b->blocks_x * b->blocks_y * BLOCK,
@@ -125,24 +127,24 @@ static void mark_time(vk_view *v, noc_pass pass) {
 
 static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
     const vk_picture *b = &v->b;
+    uint32_t rows = step->rows ? step->rows : b->blocks_y;
     VkCommandBuffer commands = v->flights[v->flight].commands;
     static const VkStridedDeviceAddressRegionKHR none = { 0 };
     switch (step->domain) {
-    case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, b->blocks_y, 1); break;
+    case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, 1); break;
     case VK_DOMAIN_SUBSETS: vkCmdDispatch(commands, v->subsets, 1, 1); break;
     case VK_DOMAIN_RAYS:
-        vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, b->blocks_y,
+        vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, rows,
                           (uint32_t)step->slots);
         break;
     }
 }
 
+/* Records a step over rays that common->rays and common->answers lead to. */
 static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding *common) {
     vk_flight *f = &v->flights[v->flight];
     const vk_structure *s = &v->world->structure;
     const vk_pipeline *p;
-    if (f->steps == VK_STEPS)
-        return noc_error(v->log, NOC_ERR_UNSUPPORTED, "vulkan: a frame of more than %d steps", VK_STEPS);
     noc_status status = noc_vk_pipeline(v->device, step->shader, &p);
     if (status != NOC_OK)
         return status;
@@ -155,6 +157,8 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     b->target_visible = v->b.visible[step->target].address;
     b->dimension = step->dimension;
     b->first = step->first;
+    b->first_row = step->first_row;
+    b->rows = step->rows ? step->rows : v->b.blocks_y;
     bool traces = step->domain == VK_DOMAIN_RAYS;
     VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
     VkDeviceAddress address = f->constants.address + at;
@@ -188,29 +192,53 @@ static VkResult submit_commands(const vk_device *d, const vk_flight *f) {
     return result == VK_SUCCESS ? vkQueueSubmit(d->queue, 1, &info, f->fence) : result;
 }
 
-/* Runs what is recorded, has the step answered by the host, and goes on recording. */
-static noc_status answer_step(vk_view *v, const vk_step *step) {
-    const vk_flight *f = &v->flights[v->flight];
-    VkResult result = submit_commands(v->device, f);
-    noc_status status = result == VK_SUCCESS ? noc_vk_wait_idle(v->device) : NOC_OK;
-    if (result == VK_SUCCESS && status == NOC_OK)
-        status = v->answerer->answer(v->answerer->user, step);
-    if (status == NOC_OK)
-        status = noc_vk_submit_upload(v->device);
-    if (result == VK_SUCCESS && status == NOC_OK)
-        result = begin_commands(f);
-    return result == VK_SUCCESS ? status : noc_vk_failed(v->device, result, "recording a frame");
+static void start_times(const vk_device *d, vk_flight *f) {
+    f->times_count = 0;
+    if (!d->tick_mask)
+        return;
+    vkCmdResetQueryPool(f->commands, f->times, 0, VK_STEPS + 1);
+    vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, 0);
 }
 
-static noc_status record(vk_view *v, const noc_frame *frame, vk_step *steps, int count) {
+/* Runs what is recorded so far, and goes on recording. between: NULL, or a step that the host answers in between. */
+static noc_status run_recorded(vk_view *v, const vk_step *between) {
+    vk_flight *f = &v->flights[v->flight];
+    VkResult result = submit_commands(v->device, f);
+    if (result != VK_SUCCESS)
+        return noc_vk_failed(v->device, result, "rendering");
+    noc_status status = noc_vk_wait_idle(v->device);
+    if (status == NOC_OK)
+        take_times(v, f);
+    if (status == NOC_OK && between)
+        status = v->answerer->answer(v->answerer->user, between);
+    if (status == NOC_OK)
+        status = noc_vk_submit_upload(v->device);
+    if (status != NOC_OK)
+        return status;
+    result = begin_commands(f);
+    f->steps = 0;
+    start_times(v->device, f);
+    return result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
+}
+
+/* Records a step, or has it answered by the host. What a command buffer has no room for goes into the next one. */
+static noc_status take_step(vk_view *v, vk_step *step, const vk_binding *common) {
+    noc_status status = v->flights[v->flight].steps == VK_STEPS ? run_recorded(v, NULL) : NOC_OK;
+    noc_vk_find_wait(&v->hazards, step);
+    if (status == NOC_OK && v->recording && step->domain == VK_DOMAIN_RAYS)
+        status = noc_vk_keep_rays(v, step);
+    if (status != NOC_OK)
+        return status;
+    return v->answerer && step->domain == VK_DOMAIN_RAYS ? run_recorded(v, step) : record_step(v, step, common);
+}
+
+static noc_status record(vk_view *v, const noc_frame *frame, vk_steps *steps) {
     vk_binding common = common_binding(v, frame);
     noc_status status = NOC_OK;
-    for (int i = 0; i < count && status == NOC_OK; i++) {
-        noc_vk_find_wait(&v->hazards, &steps[i]);
-        status = v->answerer && steps[i].domain == VK_DOMAIN_RAYS ? answer_step(v, &steps[i])
-                                                                  : record_step(v, &steps[i], &common);
-        if (i + 1 == count || steps[i + 1].pass != steps[i].pass)
-            mark_time(v, steps[i].pass);
+    for (size_t i = 0; i < steps->len && status == NOC_OK; i++) {
+        status = take_step(v, &steps->data[i], &common);
+        if (i + 1 == steps->len || steps->data[i + 1].pass != steps->data[i].pass)
+            mark_time(v, steps->data[i].pass);
     }
     return status;
 }
@@ -235,9 +263,21 @@ static bool shares(const noc_plan *plan) {
     return plan->draws && (plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER);
 }
 
+/* Room for the rays of the plan's steps, and for scratch. */
+static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
+    vk_facts facts = facts_of(v, frame);
+    int slots = 1;
+    for (int i = 0; i < frame->plan->count; i++) {
+        v->steps.len = 0;
+        if (!noc_vk_schedule(frame->plan, &frame->plan->stages[i], &facts, &v->steps))
+            return noc_no_memory(v->log, "render");
+        slots = NOC_MAX(slots, noc_vk_slots(&v->steps));
+    }
+    return noc_vk_view_fit(v, slots, noc_vk_scratch_bytes(frame->plan, &facts));
+}
+
 /* What the frame needs of the world and of the view, before anything is recorded. */
 static noc_status prepare(vk_view *v, const noc_frame *frame) {
-    vk_facts facts = facts_of(v, frame);
     noc_status status = refuse(v, frame);
     if (status == NOC_OK)
         status = finish(v, &v->flights[v->flight]);
@@ -251,7 +291,7 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
     if (status == NOC_OK)
         status = noc_vk_world_fill_sources(v->world, &v->sources, v->map_light);
     if (status == NOC_OK)
-        status = noc_vk_view_fit(v, noc_vk_schedule_slots(frame->plan, &facts));
+        status = fit_buffers(v, frame);
     return status == NOC_OK && shares(frame->plan) ? noc_vk_view_fit_samples(v, frame->plan->candidate_count) : status;
 }
 
@@ -264,14 +304,11 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
     if (result != VK_SUCCESS)
         return noc_vk_failed(v->device, result, "recording a frame");
     memcpy(f->constants.mapped, &frame->constants, sizeof(frame->constants));
-    f->steps = f->times_count = 0;
+    f->steps = 0;
     v->hazards = (vk_hazards){ 0 };
     vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
     noc_vk_barrier(f->commands);
-    if (v->device->tick_mask) {
-        vkCmdResetQueryPool(f->commands, f->times, 0, VK_STEPS + 1);
-        vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, 0);
-    }
+    start_times(v->device, f);
     return NOC_OK;
 }
 
@@ -285,7 +322,6 @@ static noc_status drop(vk_view *v, noc_status status) {
 noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
                         double from, double to) {
     vk_view *v = view;
-    vk_step steps[VK_STAGE_STEPS];
     noc_status status = NOC_OK;
     (void)to;
     if (stage == &frame->plan->stages[0]) {
@@ -297,7 +333,9 @@ noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *sta
         status = NOC_ERR_CANCELLED;
     if (status == NOC_OK) {
         vk_facts facts = facts_of(v, frame);
-        status = record(v, frame, steps, noc_vk_schedule(frame->plan, stage, &facts, steps));
+        v->steps.len = 0;
+        status = noc_vk_schedule(frame->plan, stage, &facts, &v->steps) ? record(v, frame, &v->steps)
+                                                                        : noc_no_memory(v->log, "render");
     }
     return status == NOC_OK ? status : drop(v, status);
 }
@@ -318,9 +356,10 @@ static noc_status submit(vk_view *v) {
 
 noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     vk_view *v = view;
-    vk_step steps[VK_STAGE_STEPS];
     vk_facts facts = facts_of(v, frame);
-    noc_status status = record(v, frame, steps, noc_vk_schedule_mean(&facts, steps));
+    v->steps.len = 0;
+    noc_status status =
+        noc_vk_schedule_mean(&facts, &v->steps) ? record(v, frame, &v->steps) : noc_no_memory(v->log, "render");
     if (status == NOC_OK)
         status = submit(v);
     if (status == NOC_OK) {
@@ -347,6 +386,32 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->path = d->path;
 }
 
+noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
+    vk_flight *f = &v->flights[v->flight];
+    const vk_picture *b = &v->b;
+    vk_binding common = { .frame = f->constants.address, /* of an earlier frame: its width is all that is read */
+                          .hits = b->hits.address,
+                          .counters = v->counters.address,
+                          .slots = b->blocks_x * b->blocks_y * BLOCK,
+                          .blocks_y = b->blocks_y };
+    VkResult result = begin_commands(f);
+    noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
+    f->steps = f->times_count = 0;
+    for (size_t i = 0; i < v->kept.len && status == NOC_OK; i++) {
+        common.rays = v->kept.data[i].rays.address;
+        common.answers = v->kept.data[i].answers.address;
+        status = record_step(v, &v->kept.data[i].step, &common);
+    }
+    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
+    if (status == NOC_OK && (result = submit_commands(v->device, f)) != VK_SUCCESS)
+        status = noc_vk_failed(v->device, result, "tracing rays");
+    if (status == NOC_OK)
+        status = noc_vk_wait_idle(v->device);
+    if (status == NOC_OK)
+        *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
+    return status;
+}
+
 /* ---- what this backend does not do yet ---- */
 
 bool noc_vk_read_aov(void *view, noc_aov aov, float *value) {
@@ -365,14 +430,4 @@ void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *r
 void noc_vk_light_stats(void *view, noc_light_stats *stats) {
     const vk_view *v = view;
     *stats = (noc_light_stats){ .lights = v->scene->lights.len };
-}
-
-void noc_vk_record(void *view, bool on) {
-    (void)view;
-    (void)on;
-}
-
-noc_status noc_vk_replay(void *view, noc_trace_floor *floor) {
-    (void)floor;
-    return noc_error(((vk_view *)view)->log, NOC_ERR_UNSUPPORTED, "vulkan: no trace floor on this backend yet");
 }

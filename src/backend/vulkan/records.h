@@ -15,6 +15,9 @@ struct vk_instance_record {
     uint32_t known;      /* 1: it was there in the frame before */
 };
 
+#define VK_REFERENCE_CHUNKS 64u /* of lights, that a dispatch sums up */
+#define VK_REFERENCE_RAYS 8u    /* of a pixel, that are traced at once */
+
 #define VK_COUNTERS 64 /* of each kind; invocations spread over them */
 #define VK_COUNT_RAYS 0
 #define VK_COUNT_DROPPED 1
@@ -57,7 +60,7 @@ struct vk_instance_record {
     ADDRESS(Words, answers)                                                                                            \
     ADDRESS(HitBlocks, hits)                                                                                           \
     ADDRESS(SampleRows, samples)                                                                                       \
-    ADDRESS(Floats, weighed)                                                                                           \
+    ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
     ADDRESS(Words, counters)                                                                                           \
     WORD(uint32_t, light_count)                                                                                        \
     WORD(uint32_t, slots) /* pixels of the picture's blocks: rays of one slot */                                       \
@@ -69,9 +72,11 @@ struct vk_instance_record {
     WORD(uint32_t, tree_depth)                                                                                         \
     WORD(uint32_t, sky_turns) /* rays to the sky at most */                                                            \
     WORD(uint32_t, dimension) /* of reuse: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */                                 \
-    WORD(uint32_t, first)     /* ray slot, or chunk, at which this dispatch begins */                                  \
-    WORD(uint32_t, fresh)     /* 1: the mean begins with this frame */                                                 \
-    WORD(float, share)        /* of this frame in the mean */                                                          \
+    WORD(uint32_t, first_row) /* of blocks, at which this dispatch begins, and how many its band has */                \
+    WORD(uint32_t, rows)                                                                                               \
+    WORD(uint32_t, first) /* ray, or chunk of lights, at which this dispatch begins */                                 \
+    WORD(uint32_t, fresh) /* 1: the mean begins with this frame */                                                     \
+    WORD(float, share)    /* of this frame in the mean */                                                              \
     WORD(float, ray_offset)
 
 #define VK_ANSWER_NONE 0u   /* of a ray: there is none */

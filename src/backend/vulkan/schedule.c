@@ -9,23 +9,26 @@ typedef struct scheduling {
     const noc_plan *plan;
     const noc_stage *stage;
     const vk_facts *facts;
-    vk_step *steps;
-    int count;
+    vk_steps *steps;
+    bool no_memory;
+    vk_step lost; /* stands in where memory is refused */
     noc_pass pass;
 } scheduling;
 
 static uint32_t set_bit(int set) { return R(SET) << set; }
 
 static vk_step *add(scheduling *s, vk_shader shader, uint32_t reads, uint32_t writes) {
-    vk_step *step = &s->steps[s->count++];
-    *step = (vk_step){ .shader = shader,
-                       .reads = reads,
-                       .writes = writes,
-                       .slots = 1,
-                       .source = s->stage ? s->stage->source : 0,
-                       .target = s->stage ? s->stage->target : 0,
-                       .pass = s->pass };
-    return step;
+    vk_step step = { .shader = shader,
+                     .reads = reads,
+                     .writes = writes,
+                     .slots = 1,
+                     .source = s->stage ? s->stage->source : 0,
+                     .target = s->stage ? s->stage->target : 0,
+                     .pass = s->pass };
+    if (array_push(s->steps, step))
+        return &s->steps->data[s->steps->len - 1];
+    s->no_memory = true;
+    return &s->lost;
 }
 
 /* Answers `slots` rays a pixel that the step before has written. */
@@ -103,6 +106,54 @@ static void shade(scheduling *s) {
         R(COLOUR));
 }
 
+/* Words of scratch a pixel: luminances of chunks, the number of entries, entries of two words. */
+static size_t reference_words(const vk_facts *f) {
+    return (f->lights + REFERENCE_CHUNK - 1) / REFERENCE_CHUNK + 1 + 2 * (size_t)f->constants->rays;
+}
+
+/* Rows of blocks that are done at once, so that scratch stays bounded. */
+static uint32_t band_rows(const vk_facts *f, size_t words) {
+    enum { SCRATCH_BYTES = 64 << 20 };
+    size_t row = (size_t)f->blocks_x * BLOCK * words * 4;
+    return (uint32_t)NOC_CLAMP(SCRATCH_BYTES / row, (size_t)1, (size_t)f->blocks_y);
+}
+
+static void reference_rays(scheduling *s, uint32_t first, uint32_t first_row, uint32_t rows) {
+    bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
+    size_t from = s->steps->len;
+    if (rays) {
+        vk_step *ask = add(s, VK_SHADER_reference_ask, R(SURFACES) | R(SCRATCH), R(RAYS) | R(ANSWERS));
+        ask->slots = VK_REFERENCE_RAYS;
+        trace(s, VK_REFERENCE_RAYS, false);
+    }
+    add(s, VK_SHADER_reference_use, R(SURFACES) | R(SCRATCH) | R(COLOUR) | (rays ? R(ANSWERS) : 0), R(COLOUR));
+    for (size_t i = from; i < s->steps->len; i++) {
+        s->steps->data[i].first = first;
+        s->steps->data[i].first_row = first_row;
+        s->steps->data[i].rows = rows;
+    }
+}
+
+static void shade_all(scheduling *s) {
+    const vk_facts *f = s->facts;
+    uint32_t chunks = (f->lights + REFERENCE_CHUNK - 1) / REFERENCE_CHUNK, rays = f->constants->rays;
+    uint32_t band = band_rows(f, reference_words(f));
+    for (uint32_t row = 0; row < f->blocks_y; row += band) {
+        uint32_t rows = NOC_MIN(band, f->blocks_y - row);
+        for (uint32_t i = 0; f->lights > rays && i < chunks; i += VK_REFERENCE_CHUNKS) {
+            vk_step *sum = add(s, VK_SHADER_reference_sums, R(SURFACES), R(SCRATCH));
+            sum->first = i;
+            sum->first_row = row;
+            sum->rows = rows;
+        }
+        vk_step *entries = add(s, VK_SHADER_reference_entries, R(SURFACES) | R(SCRATCH), R(SCRATCH));
+        entries->first_row = row;
+        entries->rows = rows;
+        for (uint32_t i = 0; i < NOC_MIN(rays, f->lights); i += VK_REFERENCE_RAYS)
+            reference_rays(s, i, row, rows);
+    }
+}
+
 static void headlight(scheduling *s) { add(s, VK_SHADER_headlight, R(SURFACES) | R(COLOUR), R(COLOUR)); }
 
 /* Its rays go one after the other, so that they need no more room than others. */
@@ -116,7 +167,7 @@ static void sky(scheduling *s) {
     }
 }
 
-int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_step *steps) {
+bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps) {
     static void (*const passes[NOC_PASS_COUNT])(scheduling *) = {
         [NOC_PASS_PRIMARY] = primary,
         [NOC_PASS_CANDIDATES_UNIFORM] = candidates_shared,
@@ -127,6 +178,7 @@ int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts
         [NOC_PASS_SPATIAL] = spatial,
         [NOC_PASS_EMITTERS] = emitters,
         [NOC_PASS_SHADE] = shade,
+        [NOC_PASS_SHADE_ALL] = shade_all,
         [NOC_PASS_HEADLIGHT] = headlight,
         [NOC_PASS_SKY] = sky,
     };
@@ -138,22 +190,28 @@ int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts
         if (passes[s.pass] && (facts->lights || without_lights))
             passes[s.pass](&s);
     }
-    return s.count;
+    return !s.no_memory;
 }
 
-int noc_vk_schedule_mean(const vk_facts *facts, vk_step *steps) {
+bool noc_vk_schedule_mean(const vk_facts *facts, vk_steps *steps) {
     scheduling s = { .facts = facts, .steps = steps, .pass = NOC_PASS_COUNT };
     add(&s, VK_SHADER_mean, R(COLOUR) | R(SURFACES) | R(PICTURE) | R(COVERAGE), R(PICTURE) | R(COVERAGE));
-    return s.count;
+    return !s.no_memory;
 }
 
-int noc_vk_schedule_slots(const noc_plan *plan, const vk_facts *facts) {
-    vk_step steps[VK_STAGE_STEPS];
+int noc_vk_slots(const vk_steps *steps) {
     int most = 1;
-    for (int i = 0; i < plan->count; i++)
-        for (int n = noc_vk_schedule(plan, &plan->stages[i], facts, steps); n-- > 0;)
-            most = NOC_MAX(most, steps[n].slots);
+    for (size_t i = 0; i < steps->len; i++)
+        most = NOC_MAX(most, steps->data[i].slots);
     return most;
+}
+
+size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *f) {
+    size_t words = reference_words(f);
+    for (int i = 0; i < plan->count; i++)
+        if (noc_stage_has(&plan->stages[i], NOC_PASS_SHADE_ALL))
+            return (size_t)band_rows(f, words) * f->blocks_x * BLOCK * words * 4;
+    return 0;
 }
 
 void noc_vk_find_wait(vk_hazards *h, vk_step *step) {

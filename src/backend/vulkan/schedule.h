@@ -4,6 +4,7 @@
 #ifndef NOC_VULKAN_SCHEDULE_H
 #define NOC_VULKAN_SCHEDULE_H
 
+#include "backend/vulkan/records.h"
 #include "backend/vulkan/shaders.h"
 #include "core/frame.h"
 #include "render/plan.h"
@@ -21,7 +22,7 @@ typedef enum vk_resource {
     VK_RESOURCE_ANSWERS,
     VK_RESOURCE_HITS,
     VK_RESOURCE_SAMPLES,
-    VK_RESOURCE_WEIGHED,
+    VK_RESOURCE_SCRATCH,
     VK_RESOURCE_COUNT
 } vk_resource;
 
@@ -39,8 +40,9 @@ typedef struct vk_step {
     int source, target; /* sets of reservoirs */
     uint32_t dimension; /* of reuse */
     uint32_t first;
-    bool past; /* rays are traced against the scene of the frame before */
-    bool wait; /* a barrier comes before it */
+    uint32_t first_row, rows; /* of blocks: its band of the picture; rows 0: all */
+    bool past;                /* rays are traced against the scene of the frame before */
+    bool wait;                /* a barrier comes before it */
     noc_pass pass;
 } vk_step;
 
@@ -50,18 +52,18 @@ typedef struct vk_facts {
     bool history; /* reservoirs of the frame before can be reused */
     bool past;    /* they were made with rays against the past scene */
     bool sky;     /* the sky, or a map, lights */
-    bool lights;  /* the scene has some */
+    uint32_t lights, blocks_x, blocks_y;
 } vk_facts;
 
-enum { VK_STAGE_STEPS = 128 };
+typedef NOC_ARRAY(vk_step) vk_steps;
 
-/* Fills steps, which has room for VK_STAGE_STEPS, with those of a stage; returns how many there are. Of the first stage
- * those come first that draw candidates for blocks to share. */
-int noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_step *steps);
-/* Those that add the frame to the picture. */
-int noc_vk_schedule_mean(const vk_facts *facts, vk_step *steps);
-/* Rays a pixel that any stage of the plan traces at once. */
-int noc_vk_schedule_slots(const noc_plan *plan, const vk_facts *facts);
+/* Appends the steps of a stage. False where memory is refused. */
+bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps);
+/* Appends those that add the frame to the picture. */
+bool noc_vk_schedule_mean(const vk_facts *facts, vk_steps *steps);
+/* Rays a pixel that any step traces at once, and bytes of scratch that a band takes. */
+int noc_vk_slots(const vk_steps *steps);
+size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *facts);
 
 /* What was read and written since the last barrier. */
 typedef struct vk_hazards {

@@ -20,6 +20,10 @@
     COMPUTE(spatial_use)                                                                                               \
     COMPUTE(emitters)                                                                                                  \
     COMPUTE(shade_use)                                                                                                 \
+    COMPUTE(reference_sums)                                                                                            \
+    COMPUTE(reference_entries)                                                                                         \
+    COMPUTE(reference_ask)                                                                                             \
+    COMPUTE(reference_use)                                                                                             \
     COMPUTE(headlight)                                                                                                 \
     COMPUTE(sky_ask)                                                                                                   \
     COMPUTE(sky_use)                                                                                                   \

@@ -84,7 +84,7 @@ noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
     return status;
 }
 
-noc_status noc_vk_view_fit(vk_view *v, int slots) {
+noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch) {
     vk_picture *b = &v->b;
     noc_status status = NOC_OK;
     if (b->slots < slots) {
@@ -99,6 +99,12 @@ noc_status noc_vk_view_fit(vk_view *v, int slots) {
             status = make(v, (size_t)slots * ANSWER_BYTES, &b->answers);
         if (status == NOC_OK)
             b->slots = slots;
+    }
+    if (status == NOC_OK && v->scratch.bytes < scratch) {
+        status = noc_vk_finish_flights(v);
+        noc_vk_free_buffer(v->device, &v->scratch);
+        if (status == NOC_OK)
+            status = noc_vk_make_buffer(v->device, scratch, 0, VK_PLACE_DEVICE, "scratch of a frame", &v->scratch);
     }
     if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)
         status = make(v, 4, &b->instance);
@@ -155,8 +161,10 @@ static void destroy(vk_view *v) {
     for (int i = 0; i < VK_FRAMES; i++)
         free_flight(d, &v->flights[i]);
     free_picture(d, &v->b);
+    noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
-    noc_vk_free_buffer(d, &v->weighed);
+    noc_vk_free_buffer(d, &v->scratch);
+    array_free(&v->steps);
     noc_vk_free_buffer(d, &v->counters);
     noc_vk_free_buffer(d, &v->past_lights);
 }

@@ -187,6 +187,12 @@ typedef struct vk_picture {
     size_t bytes;
 } vk_picture;
 
+/* Rays of a step, kept to be traced again. */
+typedef struct vk_kept_rays {
+    vk_step step;
+    vk_buffer rays, answers;
+} vk_kept_rays;
+
 /* Answers the rays of a step in place of the device, for tests: the steps before have run, and what it writes is there
  * for those after. The device is locked. */
 typedef struct vk_answerer {
@@ -204,7 +210,8 @@ typedef struct vk_view {
     int flight; /* of the frame being made, or of the next one */
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
-    vk_buffer samples, weighed, counters;
+    vk_buffer samples, scratch, counters;
+    vk_steps steps; /* of the stage at work */
     vk_buffer past_lights;
     noc_light_sources sources;
     const noc_map_light *map_light;
@@ -212,8 +219,10 @@ typedef struct vk_view {
     uint32_t subsets;
     uint64_t coverage_frames; /* of the mean */
     noc_frame_stats stats;    /* of finished frames since they were last asked for */
+    bool recording;           /* rays are kept */
+    NOC_ARRAY(vk_kept_rays) kept;
     const vk_answerer *answerer; /* NULL: the device traces */
-    void *host;               /* the CPU backend's view; NULL: no question was asked yet */
+    void *host;                  /* the CPU backend's view; NULL: no question was asked yet */
 } vk_view;
 
 /* device.c */
@@ -267,8 +276,8 @@ noc_status noc_vk_view_create(void *world, void **view);
 void noc_vk_view_destroy(void *view);
 size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
-/* Room for so many rays a pixel, and for instances where the scene has some. */
-noc_status noc_vk_view_fit(vk_view *v, int slots);
+/* Room for so many rays a pixel, so much scratch, and for instances where the scene has some. */
+noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
 noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
 noc_status noc_vk_read_picture(void *view, noc_image *image);
@@ -280,12 +289,20 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame);
 void noc_vk_stats(void *view, noc_frame_stats *stats);
 noc_status noc_vk_finish_flights(vk_view *v); /* waits for the view's frames in flight and takes what they counted */
 
+/* Traces the kept rays again, and nothing else. */
+noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor);
+
+/* floor.c */
+void noc_vk_record(void *view, bool on);
+noc_status noc_vk_replay(void *view, noc_trace_floor *floor);
+/* Keeps the rays that the step is about to trace. */
+noc_status noc_vk_keep_rays(vk_view *v, const vk_step *step);
+void noc_vk_forget_rays(vk_view *v);
+
 /* Views that only the CPU backend keeps so far are none here. */
 bool noc_vk_read_aov(void *view, noc_aov aov, float *value);
 void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
 void noc_vk_light_stats(void *view, noc_light_stats *stats);
-void noc_vk_record(void *view, bool on);
-noc_status noc_vk_replay(void *view, noc_trace_floor *floor);
 
 /* host.c: questions that the CPU backend answers */
 void noc_vk_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);

@@ -4,8 +4,8 @@ layout(set = 0, binding = 0) uniform accelerationStructureEXT scene;
 #include "payload.glsl"
 
 uint my_slot() {
-    uint row = gl_LaunchIDEXT.z * HERE.blocks_y + gl_LaunchIDEXT.y;
-    return row * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
+    uint row = HERE.first_row + gl_LaunchIDEXT.y;
+    return gl_LaunchIDEXT.z * HERE.slots + row * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
 }
 
 vec3 ray_origin(uint slot) {
