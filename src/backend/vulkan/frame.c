@@ -103,6 +103,8 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .scratch = v->scratch.address,
         .counters = v->counters.address,
         .light_count = (uint32_t)v->scene->lights.len,
+        .textured = v->scene->texels.len > 0,
+        .instanced = b->instance.bytes > 0,
         .slots = b->blocks_x * b->blocks_y * BLOCK,
         .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,

@@ -63,7 +63,9 @@ struct vk_instance_record {
     ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
     ADDRESS(Words, counters)                                                                                           \
     WORD(uint32_t, light_count)                                                                                        \
-    WORD(uint32_t, slots) /* pixels of the picture's blocks: rays of one slot */                                       \
+    WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
+    WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
+    WORD(uint32_t, slots)     /* pixels of the picture's blocks: rays of one slot */                                   \
     WORD(uint32_t, blocks_y)                                                                                           \
     WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
     WORD(uint32_t, subsets)                                                                                            \

@@ -1,43 +1,76 @@
 #version 460
-/* What the camera's rays hit becomes the receivers of the G-buffer. */
+/* What the camera's rays hit becomes the receivers of the G-buffer (core/primary.h). */
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
-#include "core/hit.h"
 
-vec3 corner(uint vertex) { return three_of(HERE.positions, vertex); }
+uint texel_load(uint place) { return HERE.texels.at[place]; }
+
+#include "core/primary.h"
+
+placement placement_of(vk_instance_record r) {
+    placement m;
+    m.x = vec3(r.transform[0], r.transform[1], r.transform[2]);
+    m.y = vec3(r.transform[4], r.transform[5], r.transform[6]);
+    m.z = vec3(r.transform[8], r.transform[9], r.transform[10]);
+    m.at = vec3(r.transform[3], r.transform[7], r.transform[11]);
+    return m;
+}
+
+vec2 corner_in_image(uint vertex) {
+    return vec2(HERE.image_corners.at[2u * vertex], HERE.image_corners.at[2u * vertex + 1u]);
+}
+
+/* The albedo that a texture gives the receiver r, 0: none. */
+uint texel_of(ray_hit h, receiver r, place p, uvec3 vertex, bool placed, placement m) {
+    uint image = HERE.image_places.at[h.material];
+    if (image == 0u)
+        return 0u;
+    image_corners at;
+    vec2 a = corner_in_image(vertex.x), b = corner_in_image(vertex.y), c = corner_in_image(vertex.z);
+    at.u = vec3(a.x, b.x, c.x);
+    at.v = vec3(a.y, b.y, c.y);
+    uint x = p.x & ~3u, y = p.y & ~3u;
+    float apart2 = rays_apart2(frame_direction(x, y), frame_direction(x, y + 1u));
+    float width = hit_width(h, r.n, apart2, placed ? placement_scale2(m) : 1.0);
+    return hit_texel(h, image - 1u, at, width, splat3(HERE.materials.at[h.material].albedo));
+}
 
 void main() {
     if (!in_grid())
         return;
     place p = my_place();
-    uint b = p.slot / BLOCK, l = p.lane;
+    uint b = p.slot / BLOCK, l = p.lane, number = HERE.hits.at[b].triangle[l];
+    uint instance = NO_INSTANCE, texel = 0u;
     receiver r = receiver_none();
-    uint triangle = HERE.hits.at[b].triangle[l];
-    if (p.inside && triangle != 0xffffffffu) {
+    if (p.inside && number != NO_HIT) {
         tlas_entry e = HERE.entries.at[HERE.hits.at[b].entry[l]];
-        triangle = e.order.at[triangle];
-        vec3 d = vec3(HERE.rays.at[b].d[0][l], HERE.rays.at[b].d[1][l], HERE.rays.at[b].d[2][l]);
-        corners t;
-        t.a = corner(HERE.indices.at[3u * triangle]);
-        t.b = corner(HERE.indices.at[3u * triangle + 1u]);
-        t.c = corner(HERE.indices.at[3u * triangle + 2u]);
-        r.p = hit_point(t, HERE.hits.at[b].u[l], HERE.hits.at[b].v[l]);
-        vec3 n = hit_normal(t);
-        EXACT float toward = n.x * d.x + n.y * d.y + n.z * d.z;
-        EXACT float d2 = d.x * d.x + d.y * d.y + d.z * d.z;
-        float side = toward < 0.0 ? 1.0 : -1.0;
-        r.n = n * side;
-        r.depth = HERE.hits.at[b].t[l] * sqrt(d2);
-        r.material = HERE.triangle_material.at[triangle];
-        uint id = HERE.triangle_light.at[triangle];
-        if (id != NO_LIGHT) {
-            light_record q = HERE.lights.at[id];
-            bool shows = (side > 0.0 || (q.flags & LIGHT_TWO_SIDED) != 0u) &&
-                         (q.e[0] > 0.0 || q.e[1] > 0.0 || q.e[2] > 0.0);
-            id = shows ? id : NO_LIGHT;
+        uint triangle = e.order.at[number];
+        uvec3 vertex = uvec3(HERE.indices.at[3u * triangle], HERE.indices.at[3u * triangle + 1u],
+                             HERE.indices.at[3u * triangle + 2u]);
+        ray_hit h;
+        h.at.a = three_of(HERE.positions, vertex.x);
+        h.at.b = three_of(HERE.positions, vertex.y);
+        h.at.c = three_of(HERE.positions, vertex.z);
+        h.u = HERE.hits.at[b].u[l];
+        h.v = HERE.hits.at[b].v[l];
+        h.far_ = HERE.hits.at[b].t[l];
+        h.d = vec3(HERE.rays.at[b].d[0][l], HERE.rays.at[b].d[1][l], HERE.rays.at[b].d[2][l]);
+        h.material = HERE.triangle_material.at[triangle];
+        h.light = HERE.triangle_light.at[triangle];
+        instance = e.instance;
+        bool placed = instance != NO_INSTANCE;
+        placement m;
+        if (placed) {
+            m = placement_of(HERE.instances.at[instance]);
+            if (h.light != NO_LIGHT)
+                h.light = HERE.instance_lights.at[HERE.instances.at[instance].lights + h.light];
         }
-        r.light = id;
+        r = receiver_of_hit(h, placed, m);
+        if (HERE.textured != 0u)
+            texel = texel_of(h, r, p, vertex, placed, m);
     }
-    receiver_put(HERE.surfaces, p.block, l, r, 0u);
+    receiver_put(HERE.surfaces, p.block, l, r, texel);
+    if (HERE.instanced != 0u)
+        HERE.instance.at[p.slot] = instance;
 }

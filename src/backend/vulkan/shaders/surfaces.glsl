@@ -1,20 +1,9 @@
 /* Surfaces of receivers: what they are made of, seen from an eye. */
-surf surf_of(receiver r, uint texel, vec3 eye) {
-    surf s;
-    s.p = r.p;
-    s.n = r.n;
-    vec3 d = sub3(eye, s.p);
-    EXACT float inv = 1.0 / sqrt(max_(dot3(d, d), 1e-20));
-    s.wo = mul3(d, inv);
-    material_record m = HERE.materials.at[r.material == NO_SURFACE ? 0u : r.material];
-    s.albedo = splat3(m.albedo);
-    s.f0 = (FRAME.flags & FRAME_MATTE) != 0u ? 0.0 : m.f0;
-    s.alpha = m.alpha;
-    return s;
-}
-
 surf surf_at(SurfaceBlocks g, uint block, uint l, vec3 eye) {
-    return surf_of(receiver_at(g, block, l), g.at[block].texel[l], eye);
+    receiver r = receiver_at(g, block, l);
+    material_record m = HERE.materials.at[r.material == NO_SURFACE ? 0u : r.material];
+    return surf_of_receiver(r.p, r.n, eye, material_of_record(m), g.at[block].texel[l],
+                            (FRAME.flags & FRAME_MATTE) != 0u);
 }
 
 vec3 eye_now() { return splat3(FRAME.camera.eye); }
