@@ -41,8 +41,7 @@ static vk_facts facts_for(const noc_render_params *p, bool map, int history, fra
 }
 
 static bool known(const noc_plan *plan) {
-    return !plan->draws ||
-           (plan->candidates != NOC_CANDIDATES_LISTS && plan->candidates != NOC_CANDIDATES_INFLUENCE);
+    return !plan->draws || (plan->candidates != NOC_CANDIDATES_LISTS && plan->candidates != NOC_CANDIDATES_INFLUENCE);
 }
 
 /* All steps of a frame, with their barriers. */

@@ -1,6 +1,9 @@
 /* The Vulkan backend beside the CPU's, on a device that traces rays. */
 #include "vulkan_view.h"
 
+#include "../light/profiles.h"
+#include "../render/rooms.h"
+
 #include <nocturne/nocturne.h>
 
 static noc_scene *builtin(const char *name) {
@@ -12,29 +15,28 @@ static noc_scene *builtin(const char *name) {
     return scene;
 }
 
-/* Renders frames on both machines; what is between rays has the same bits in every buffer. */
-static void expect_same_bits(twins *t, const noc_render_params *p, int frames, const char *name) {
-    noc_camera camera;
-    assert_int_equal(noc_scene_camera(t->cpu->scene, NOC_VIEWPOINT_STREET, (double)p->width / p->height, &camera),
-                     NOC_OK);
+/* Renders a frame on both machines; what is between rays has the same bits in every buffer. */
+static void expect_same_frame(twins *t, const noc_camera *camera, const noc_render_params *p, const char *name) {
+    assert_int_equal(noc_view_render(t->cpu, camera, p, NULL), NOC_OK);
+    assert_int_equal(noc_view_render(t->gpu, camera, p, NULL), NOC_OK);
+    const frame_buffers *c = &cpu_of(t)->b;
+    const vk_picture *g = &gpu_of(t)->b;
+    bool chooses = p->method != NOC_METHOD_HEADLIGHT && p->method != NOC_METHOD_REFERENCE;
+    int set = cpu_of(t)->shaded_set;
+    size_t surfaces = differing(t, c->g[t->cpu->history.gbuffer], &g->surfaces[t->gpu->history.gbuffer], 10);
+    size_t reservoirs = chooses ? differing(t, c->r[set], &g->reservoirs[set], 6) : 0;
+    size_t colour = differing(t, c->colour, &g->colour, 3), picture = differing(t, c->picture, &g->picture, 3);
+    if (surfaces || reservoirs || colour || picture)
+        fail_msg("%s, frame %u: words that differ: surfaces %zu, reservoirs %zu, colour %zu, picture %zu", name,
+                 t->cpu->history.index, surfaces, reservoirs, colour, picture);
+}
+
+static void expect_same_bits(twins *t, const noc_camera *camera, const noc_render_params *p, int frames,
+                             const char *name) {
     noc_view_reset(t->cpu);
     noc_view_reset(t->gpu);
-    for (int f = 0; f < frames; f++) {
-        assert_int_equal(noc_view_render(t->cpu, &camera, p, NULL), NOC_OK);
-        assert_int_equal(noc_view_render(t->gpu, &camera, p, NULL), NOC_OK);
-        const frame_buffers *c = &cpu_of(t)->b;
-        const vk_picture *g = &gpu_of(t)->b;
-        size_t surfaces = differing(t, c->g[t->cpu->history.gbuffer], &g->surfaces[t->gpu->history.gbuffer], 10);
-        int set = cpu_of(t)->shaded_set;
-        size_t reservoirs = p->method == NOC_METHOD_HEADLIGHT || p->method == NOC_METHOD_REFERENCE
-                                ? 0
-                                : differing(t, c->r[set], &g->reservoirs[set], 6);
-        size_t colour = differing(t, c->colour, &g->colour, 3), picture = differing(t, c->picture, &g->picture, 3);
-        if (surfaces || reservoirs || colour || picture)
-            print_message("# %s, frame %d: words that differ: surfaces %zu, reservoirs %zu, colour %zu, picture %zu\n",
-                          name, f, surfaces, reservoirs, colour, picture);
-        assert_int_equal(surfaces + reservoirs + colour + picture, 0);
-    }
+    for (int f = 0; f < frames; f++)
+        expect_same_frame(t, camera, p, name);
 }
 
 static void plans_have_the_same_bits(void **state) {
@@ -63,8 +65,10 @@ static void plans_have_the_same_bits(void **state) {
     };
     noc_scene *scene = builtin("mess");
     noc_log *log = noc_log_create(NULL);
+    noc_camera camera;
     twins t;
     (void)state;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 62.0 / 45, &camera), NOC_OK);
     if (!open_twins(scene, true, log, &t))
         skip();
     for (size_t i = 0; i < NOC_COUNT(plans); i++) {
@@ -79,8 +83,147 @@ static void plans_have_the_same_bits(void **state) {
         p.final_ray = plans[i].final_ray;
         p.passes = plans[i].passes;
         p.rays = 20;
-        expect_same_bits(&t, &p, p.method == NOC_METHOD_REFERENCE ? 1 : 3, plans[i].name);
+        expect_same_bits(&t, &camera, &p, p.method == NOC_METHOD_REFERENCE ? 1 : 3, plans[i].name);
     }
+    close_twins(&t);
+    noc_scene_destroy(scene);
+}
+
+/* ---- all kinds of things ---- */
+
+enum { SIDE = 48 };
+
+static int chequers(noc_scene *scene) {
+    static unsigned char rgb[3 * 32 * 32];
+    for (size_t i = 0; i < sizeof(rgb); i++)
+        rgb[i] = (unsigned char)((i * 37 + i / 96 * 11) % 200 + 30);
+    return noc_scene_add_texture(scene, &(noc_texture){ 32, 32, rgb, .wrap = NOC_WRAP_MIRROR });
+}
+
+/* A square with places in an image, in the x-z plane of a model (0: the world). */
+static void add_board(noc_scene *scene, int texture, int model, double size) {
+    noc_material m = { .albedo = { 0.9f, 0.8f, 0.7f }, .roughness = 0.4f, .f0 = 0.04f, .texture = texture };
+    const double xyz[] = { -size, 0, 0, size, 0, 0, size, 0, 2 * size, -size, 0, 2 * size };
+    const float uv[] = { 0, 0, 3, 0, 3, 3, 0, 3 };
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = noc_scene_add_material(scene, &m),
+                      .model = model,
+                      .uv = uv };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+}
+
+static noc_image *bright_map(void) {
+    noc_image *map = noc_image_create(32, 16, NULL);
+    assert_non_null(map);
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        map->rgb[i] = i % 96 < 12 ? 5.0f : 0.1f + 0.01f * (float)(i % 7);
+    return map;
+}
+
+/* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles. */
+static noc_scene *all_kinds(int *car) {
+    noc_scene *s = noc_scene_create(NULL);
+    int texture = chequers(s), profiles = add_test_profiles(s);
+    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { .2f, .2f, .25f }, .f0 = .05f, .roughness = .3f });
+    add_floor(s, wet, 0, 0, 0, 12);
+    add_board(s, texture, 0, 3);
+    int model = noc_scene_add_model(s, "car");
+    add_board(s, texture, model, 0.5);
+    noc_light head = { .kind = NOC_LIGHT_DISC,
+                       .position = { 0, -0.1, 1.2 },
+                       .direction = { 0, -1, -0.3 },
+                       .radius = 0.1,
+                       .emission = { 3000, 2500, 2000 },
+                       .model = model };
+    assert_true(noc_scene_add_light(s, &head) >= 0);
+    for (int i = 0; i < 60; i++) {
+        noc_light l = crowd_light(i, -2);
+        if (l.kind == NOC_LIGHT_SPHERE) {
+            l.profile = profiles + i % TEST_PROFILES;
+            l.direction[1] = 0;
+            l.direction[2] = -1;
+        }
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    for (int i = 0; i < 3; i++) {
+        noc_instance in = { model, { 1.5, 0, 0, -4 + 4 * i, 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
+        int index = noc_scene_add_instance(s, &in);
+        assert_true(index >= 0);
+        *car = index;
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static noc_render_params all_kinds_params(noc_method method, bool map) {
+    noc_render_params p = noc_render_default_params();
+    p.width = p.height = SIDE;
+    p.method = method;
+    p.candidates = NOC_CANDIDATES_UNIFORM;
+    p.environment_light = map;
+    p.environment_rotation = 50;
+    return p;
+}
+
+static void all_kinds_have_the_same_bits(void **state) {
+    int car;
+    noc_scene *scene = all_kinds(&car);
+    noc_log *log = noc_log_create(NULL);
+    noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
+    twins t;
+    (void)state;
+    if (!open_twins(scene, true, log, &t))
+        skip();
+    noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
+    expect_same_bits(&t, &camera, &p, 3, "textures, instances, profiles");
+    p.gloss = false;
+    expect_same_bits(&t, &camera, &p, 2, "without gloss");
+    noc_image *map = bright_map();
+    assert_int_equal(noc_scene_set_environment(scene, map), NOC_OK);
+    noc_image_destroy(map);
+    p = all_kinds_params(NOC_METHOD_RIS, true);
+    expect_same_bits(&t, &camera, &p, 2, "a map that lights");
+    p.environment_light = false;
+    expect_same_bits(&t, &camera, &p, 2, "a map behind everything");
+    close_twins(&t);
+    noc_scene_destroy(scene);
+}
+
+/* ---- rays ---- */
+
+/* Frames with rays of each machine's own: the pictures agree but for what grazes an edge. */
+static void rays_agree(void **state) {
+    noc_scene *scene = builtin("mess");
+    noc_log *log = noc_log_create(NULL);
+    noc_camera camera;
+    twins t;
+    (void)state;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &camera), NOC_OK);
+    if (!open_twins(scene, false, log, &t))
+        skip();
+    noc_render_params p = noc_render_default_params();
+    p.width = p.height = 128;
+    p.method = NOC_METHOD_RIS;
+    p.candidates = NOC_CANDIDATES_UNIFORM;
+    assert_int_equal(noc_view_render(t.cpu, &camera, &p, NULL), NOC_OK);
+    assert_int_equal(noc_view_render(t.gpu, &camera, &p, NULL), NOC_OK);
+    noc_image *a = noc_view_image(t.cpu), *b = noc_view_image(t.gpu);
+    double sums[2] = { 0, 0 }, square = 0;
+    assert_true(a && b);
+    for (int i = 0; i < 3 * 128 * 128; i++) {
+        sums[0] += a->rgb[i];
+        sums[1] += b->rgb[i];
+        square += (a->rgb[i] - b->rgb[i]) * (double)(a->rgb[i] - b->rgb[i]);
+    }
+    double mean = sums[0] / (3 * 128 * 128);
+    print_message("# means differ by %.2g, relative RMSE %.2g\n", sums[1] / sums[0] - 1,
+                  sqrt(square / (3 * 128 * 128)) / mean);
+    assert_true(fabs(sums[1] / sums[0] - 1) < 1e-3);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
     close_twins(&t);
     noc_scene_destroy(scene);
 }
@@ -88,6 +231,8 @@ static void plans_have_the_same_bits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plans_have_the_same_bits),
+        cmocka_unit_test(all_kinds_have_the_same_bits),
+        cmocka_unit_test(rays_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,7 @@
 
 /* Calls back with every combination of what decides a plan. */
 static inline int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history, bool map,
-                                   bool surfaces)) {
+                                          bool surfaces)) {
     int count = 0;
     for (int method = 0; method < NOC_METHOD_COUNT; method++)
         for (int from = 0; from < NOC_CANDIDATES_COUNT; from++)

@@ -214,7 +214,7 @@ static noc_status follow_arrays(vk_world *w) {
 noc_status noc_vk_world_follow(vk_world *w) {
     const noc_scene_versions *now = &w->scene->versions;
     uint64_t shape = noc_scene_shape(now);
-    if (w->filled && w->seen.commits == now->commits)
+    if (w->filled && !memcmp(&w->seen, now, sizeof(*now)))
         return NOC_OK;
     noc_status status = follow_arrays(w);
     if (status == NOC_OK && (!w->filled || w->shape != shape)) {
