@@ -180,9 +180,9 @@ typedef struct noc_lab_progress {
 } noc_lab_progress;
 
 typedef struct noc_lab_params {
-    const char *folder; /* that all is written to, made where it is missing; needed */
-    const char *cache;  /* that references are kept in; NULL: nocturne in the user's cache folder */
-    int threads;        /* 0: one a core */
+    const char *folder;       /* that all is written to, made where it is missing; needed */
+    const char *cache;        /* that references are kept in; NULL: nocturne in the user's cache folder */
+    noc_device_params device; /* its device text must outlive the lab */
     /* May be NULL. Called from the thread that works; return false to end the work, which can be gone on with. */
     bool (*progress)(void *user, const noc_lab_progress *progress);
     /* A line about what goes on, such as that a reference is made and how long it will take; may be NULL. */
@@ -190,7 +190,7 @@ typedef struct noc_lab_params {
     void *user;
 } noc_lab_params;
 
-#define NOC_LAB_DEFAULTS(set) set(threads, 0)
+#define NOC_LAB_DEFAULTS(set) set(device.backend, NOC_BACKEND_EMBREE)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_lab_params, noc_lab_default_params, NOC_LAB_DEFAULTS)
 #else

@@ -56,6 +56,7 @@ NOC_API const noc_option *noc_group_options(void);     /* fields of noc_group_ru
 NOC_API const noc_option *noc_city_options(void);      /* fields of noc_city_params */
 NOC_API const noc_option *noc_builtin_options(void);   /* fields of noc_builtin_params, but for the city's */
 NOC_API const noc_option *noc_camera_options(void);    /* fields of noc_camera_params */
+NOC_API const noc_option *noc_device_options(void);    /* fields of noc_device_params */
 
 /* Row of an option "preset", for tables of one's own: field preset, an int that is a noc_preset, of struct S. */
 #define NOC_OPTION_PRESET(S, group)                                                                                    \

@@ -181,21 +181,62 @@ NOC_API void noc_render_use_preset(noc_render_params *params, noc_preset preset)
 /* A device is what renders: threads, memory, a ray tracer. All scenes and views of a process may share one. */
 typedef struct noc_device noc_device;
 
+/* The code of a frame, and the kind of device that it is for. All backends share the estimators (src/core); pictures
+ * differ where rays graze. */
+typedef enum noc_backend_id {
+    NOC_BACKEND_EMBREE, /* the processor; rays by Embree */
+    NOC_BACKEND_VULKAN, /* a device with Vulkan ray tracing */
+    NOC_BACKEND_AUTO,   /* vulkan if a GPU with hardware ray tracing is usable, else embree */
+    NOC_BACKEND_COUNT
+} noc_backend_id;
+NOC_API const char *noc_backend_name(noc_backend_id backend); /* "embree" */
+
+typedef enum noc_device_kind {
+    NOC_DEVICE_PROCESSOR,  /* the only device of embree */
+    NOC_DEVICE_SOFTWARE,   /* a Vulkan driver that runs on the processor */
+    NOC_DEVICE_OTHER,      /* a GPU of unknown kind */
+    NOC_DEVICE_VIRTUAL,    /* a GPU of a virtual machine's host */
+    NOC_DEVICE_INTEGRATED, /* a GPU that shares the processor's memory */
+    NOC_DEVICE_DISCRETE,   /* a GPU with memory of its own */
+    NOC_DEVICE_KIND_COUNT
+} noc_device_kind;
+NOC_API const char *noc_device_kind_name(noc_device_kind kind); /* "discrete" */
+
+typedef struct noc_device_info {
+    noc_backend_id backend; /* never auto */
+    int number;             /* among the devices of its backend, from 0; -1: the backend has none, and `why` says why */
+    noc_device_kind kind;
+    char name[256];   /* "NVIDIA GeForce RTX 3060" */
+    char driver[128]; /* "NVIDIA 550.54"; "": none, or unknown */
+    bool usable;
+    char why[256]; /* why it is not usable; "": it is */
+} noc_device_info;
+
+/* Fills the first `capacity` of the devices of all backends, and returns how many there are. Drivers are loaded for it,
+ * which takes some 50 ms. */
+NOC_API size_t noc_devices(noc_device_info *devices, size_t capacity);
+
 typedef struct noc_device_params {
-    int threads;         /* 0: one a core */
-    const char *backend; /* NULL or "embree" */
+    int threads; /* of the processor; 0: one a core */
+    noc_backend_id backend;
+    /* vulkan: a part of the device's name, case ignored, or its number; NULL: discrete GPUs first, software last */
+    const char *device;
 } noc_device_params;
 
-#define NOC_DEVICE_DEFAULTS(set) set(threads, 0)
+#define NOC_DEVICE_DEFAULTS(set) set(threads, 0) set(backend, NOC_BACKEND_EMBREE)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_device_params, noc_device_default_params, NOC_DEVICE_DEFAULTS)
 #else
 #define noc_device_default_params() ((noc_device_params){ NOC_DEVICE_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
+/* Sets *info to the device that noc_device_create would open. NOC_ERR_ARGUMENT after reporting that there is no such
+ * device, NOC_ERR_UNSUPPORTED after reporting why it is not usable. NULL params are the defaults. */
+NOC_API noc_status noc_device_find(const noc_device_params *params, noc_device_info *info, noc_log *log);
 /* NULL params are the defaults; NULL after reporting an error. The device keeps the log, which must outlive it and is
  * told of all that goes wrong in its views. */
 NOC_API noc_device *noc_device_create(const noc_device_params *params, noc_log *log);
+NOC_API const noc_device_info *noc_device_get_info(const noc_device *device); /* the device's; NULL of NULL */
 /* After all of its views. */
 NOC_API void noc_device_destroy(noc_device *device);
 

@@ -121,6 +121,7 @@ const char *noc_scan_double(const char *s, const char *end, double *out);
 bool noc_parse_int(const char *s, long long *out);
 bool noc_ieq(const char *a, const char *b); /* ASCII case-insensitive equality; NULL equals nothing */
 
+void noc_processor_name(char *text, size_t size); /* "AMD EPYC 7763 64-Core Processor" */
 double noc_wall_seconds(void);
 double noc_cpu_seconds(void); /* of the process, all threads */
 

@@ -28,7 +28,6 @@ static const noc_option own_options[] = {
       "what is timed as lights, triangles, pixels and threads grow" },
     { "quick", "Bench", NOC_OPTION_BOOL, offsetof(A, quick), 0, 1, NULL, "",
       "small pictures and scenes, one frame each: to see that all of it works" },
-    { "threads", "Bench", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
@@ -38,6 +37,7 @@ static const bench_args defaults = { .size = "480x270",
                                      .frames = 5,
                                      .time = 60,
                                      .method = BENCH_INTERACTIVE,
+                                     .device = CLI_DEVICE,
                                      .import = noc_import_default_params(),
                                      .builtin = noc_builtin_default_params() };
 
@@ -58,6 +58,7 @@ const cli_command cli_bench = {
     "  nocturne bench --time 0 --frames 9 -o bench.json\n"
     "Ctrl-C ends it with status 130; tables that were complete are there.\n",
     { { options, 0, NULL },
+      { noc_device_options, offsetof(A, device), NULL },
       { noc_import_options, offsetof(A, import), NULL },
       { noc_city_options, offsetof(A, builtin.city), NULL },
       { noc_builtin_options, offsetof(A, builtin), NULL },
@@ -129,6 +130,7 @@ static int check(bench_args *args) {
     cli_add_named(common, &args->import);
     cli_note_chosen(common, &args->import);
     status = cli_check_built(&cli_bench, common, &args->import);
+    status = status ? status : cli_check_device(&cli_bench, &args->device);
     return status || !args->output ? status : cli_check_output(&cli_bench, args->output, CLI_ANY, common);
 }
 
@@ -136,7 +138,7 @@ noc_status bench_load(bench *b, bool windows, noc_scene **scene) {
     bench_args *args = b->args;
     noc_import_params import = args->import;
     import.builtin = &args->builtin;
-    import.threads = args->threads;
+    import.threads = args->device.threads;
     import.progress = (noc_progress){ cli_load_progress, NULL };
     import.windows = windows ? import.windows : NOC_SWITCH_OFF;
     noc_recipe_lists(args->common.recipe, &import);
@@ -191,7 +193,7 @@ static int work(bench *b) {
         cli_error("the inputs hold no surface that can be drawn; nocturne info tells what they hold");
         return CLI_FAILURE;
     }
-    b->device = noc_device_create(&(noc_device_params){ .threads = args->threads }, b->log);
+    b->device = noc_device_create(&args->device, b->log);
     if (!b->device)
         return CLI_FAILURE;
     b->begun = cli_now();

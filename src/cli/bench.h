@@ -30,7 +30,8 @@ typedef struct bench_args {
     cli_args common;
     const char *output, *only, *size;
     bool json, quick;
-    int frames, threads, method;
+    int frames, method;
+    noc_device_params device;
     double time; /* s; 0: no limit */
     noc_import_params import;
     noc_builtin_params builtin;
@@ -90,7 +91,6 @@ double bench_pass_sum(const noc_lab_times *times);
 size_t bench_rows_of(const bench *b, bench_section section);
 /* bench_room.c: memory that may still be taken, bytes. */
 double bench_room(const noc_import_params *import);
-const char *bench_processor(char text[80]); /* its name; "unknown" */
 
 /* bench_table.c */
 void bench_print_head(const bench *b);

@@ -116,13 +116,17 @@ static void memory(const bench *b, FILE *out) {
 void bench_json(const bench *b, bool complete, FILE *out) {
     const bench_args *args = b->args;
     const noc_scene_info *info = &b->info;
-    char processor[80];
+    const noc_device_info *device = noc_device_get_info(b->device);
+    noc_device_info processor;
     fprintf(out, "{\n  \"nocturne\": \"%s\", \"features\": ", noc_version());
     cli_json_text(out, noc_features());
+    fprintf(out, ", \"backend\": \"%s\", \"device\": ", noc_backend_name(device->backend));
+    cli_json_text(out, device->name);
+    noc_device_find(NULL, &processor, b->log);
     fprintf(out, ", \"processor\": ");
-    cli_json_text(out, bench_processor(processor));
+    cli_json_text(out, processor.name);
     fprintf(out, ",\n  \"cores\": %ld, \"threads\": %d, \"complete\": %s,\n  \"inputs\": [",
-            sysconf(_SC_NPROCESSORS_ONLN), args->threads, complete ? "true" : "false");
+            sysconf(_SC_NPROCESSORS_ONLN), args->device.threads, complete ? "true" : "false");
     for (size_t i = 0; i < args->common.input_count; i++) {
         fputs(i ? ", " : "", out);
         cli_json_text(out, args->common.inputs[i]);

@@ -364,7 +364,7 @@ static noc_status measure_resolution(bench *b) {
 
 static noc_status measure_threads(bench *b) {
     const bench_args *args = b->args;
-    int most = args->threads > 0 ? args->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    int most = args->device.threads > 0 ? args->device.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
     noc_lab_case of = { .scene = b->scene, .render = params_of(args, args->method) };
     turn t;
     noc_status status = begin(b, BENCH_THREADS, &t);
@@ -552,6 +552,7 @@ noc_status bench_measure(bench *b, void (*printed)(const bench *b, bench_section
         [BENCH_THREADS] = measure_threads,     [BENCH_ISA] = measure_isa,
     };
     const bool *wanted = b->args->sections;
+    bool processor = noc_device_get_info(b->device)->kind == NOC_DEVICE_PROCESSOR;
     noc_status status = NOC_OK;
     for (int s = 0; !status && s < BENCH_SECTIONS; s++) {
         bool needed = wanted[s] || (s == BENCH_FLOOR && (wanted[BENCH_PASSES] || wanted[BENCH_MEMORY])) ||
@@ -560,6 +561,8 @@ noc_status bench_measure(bench *b, void (*printed)(const bench *b, bench_section
         bool over = cli_now() >= last_moment(b) && s != BENCH_PASSES && s != BENCH_MEMORY;
         if (wanted[s] && (empty || over))
             leave_out(b, (bench_section)s, "all of it", "--time is over");
+        else if (wanted[s] && !processor && (s == BENCH_THREADS || s == BENCH_ISA))
+            leave_out(b, (bench_section)s, "all of it", "it is measured on the processor alone");
         else if (needed && sections[s])
             status = sections[s](b);
         cli_progress_clear();

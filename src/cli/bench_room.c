@@ -1,4 +1,4 @@
-/* What the machine is, and what memory of it is left. */
+/* Memory that is left. */
 #include "bench.h"
 
 #include <math.h>
@@ -35,21 +35,4 @@ double bench_room(const noc_import_params *import) {
     for (size_t i = 0; i < sizeof(limits) / sizeof(*limits); i++)
         room = limits[i] < room ? limits[i] : room; /* false for NAN */
     return room > 0 ? room : 0;
-}
-
-const char *bench_processor(char text[80]) {
-    char line[256];
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    snprintf(text, 80, "unknown");
-    while (f && fgets(line, sizeof(line), f)) {
-        const char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) || !colon)
-            continue;
-        line[strcspn(line, "\n")] = 0;
-        noc_text_clean(text, 80, colon + 1 + strspn(colon + 1, " "));
-        break;
-    }
-    if (f)
-        fclose(f);
-    return text;
 }

@@ -21,7 +21,9 @@ void bench_print_head(const bench *b) {
     const bench_args *args = b->args;
     const noc_scene_info *info = &b->info;
     char a[80], c[64], d[64];
-    printf("nocturne %s, %s, %s\n", noc_version(), noc_features(), bench_processor(a));
+    const noc_device_info *device = noc_device_get_info(b->device);
+    printf("nocturne %s, %s, %s, %s\n", noc_version(), noc_features(), noc_backend_name(device->backend),
+           noc_text_clean(a, sizeof(a), device->name));
     for (size_t i = 0; i < args->common.input_count; i++)
         printf("%s%s", i ? ", " : "", noc_text_clean(a, sizeof(a), args->common.inputs[i]));
     printf(": %s, %s", noc_text_many(a, info->triangles, "triangle"), noc_text_many(c, info->lights, "light"));

@@ -60,6 +60,7 @@ int cli_check_city(render_args *args) {
     status = status ? status : cli_parse_exposure(args->command, args->exposure, &args->display);
     status = status ? status : cli_check_camera(args);
     status = status ? status : check_map(args);
+    status = status ? status : cli_check_device(args->command, &args->device);
     return status ? status : cli_check_built(args->command, &args->common, &args->import);
 }
 
@@ -67,7 +68,7 @@ noc_status cli_load_city(render_args *args, noc_scene *scene, const noc_progress
     args->import.progress = *progress;
     args->import.builtin = &args->builtin;
     noc_recipe_lists(args->common.recipe, &args->import);
-    args->import.threads = args->threads;
+    args->import.threads = args->device.threads;
     noc_status status = noc_scene_load(scene, args->common.inputs, args->common.input_count, &args->import, report);
     return status ? status : cli_switch_built(&args->common, scene, &args->import, report ? *report : NULL);
 }

@@ -8,7 +8,7 @@
 /* Exit statuses. An interruption by signal n ends with 128 + n, as shells do: 130 after Ctrl-C. */
 enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
 
-#define CLI_SETS 14
+#define CLI_SETS 15
 #define CLI_GIVEN 256
 
 /* What every command's arguments begin with. */
@@ -23,6 +23,10 @@ typedef struct cli_args {
     size_t said_anew;   /* so many of the first are said beside a built city, whose own recipe says the others */
     noc_recipe *recipe; /* among the inputs; NULL: none */
 } cli_args;
+
+/* Of commands that render; the library's default is embree. */
+#define CLI_DEVICE                                                                                                     \
+    { .backend = NOC_BACKEND_AUTO }
 
 /* An option table and where its params struct lies in the command's arguments. */
 typedef struct cli_set {
@@ -110,6 +114,11 @@ void cli_catch_signals(void); /* the first signal is remembered, the second ends
 void cli_nothing_to_keep(bool nothing);
 int cli_interrupted(void); /* its number, 0 if there was none */
 double cli_now(void);      /* wall clock, seconds */
+
+/* devices.c */
+void cli_print_devices(void); /* a line a device */
+/* Refuses a device that is not there or not usable, before the long work: CLI_OK, or an exit status after reporting. */
+int cli_check_device(const cli_command *command, const noc_device_params *device);
 
 /* recipe.c */
 /* Takes the recipe among the inputs of a command that reads cities, if there is one. CLI_OK, or an exit status after

@@ -8,7 +8,7 @@
 typedef struct experiment_args {
     cli_args common;
     const char *output, *cache;
-    int threads;
+    noc_device_params device;
 } experiment_args;
 
 #define A experiment_args
@@ -17,13 +17,12 @@ static const noc_option own_options[] = {
       "folder for rows, plots, crops and report; else the spec's name without .json" },
     { "cache", "Output", NOC_OPTION_TEXT, offsetof(A, cache), 0, 0, NULL, "FOLDER",
       "folder that references are kept in; else nocturne in the user's cache folder" },
-    { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
-static const experiment_args defaults = { .threads = 0 };
+static const experiment_args defaults = { .device = CLI_DEVICE };
 
 const cli_command cli_experiment = {
     "experiment",
@@ -35,7 +34,7 @@ const cli_command cli_experiment = {
     "Examples\n"
     "  nocturne experiment experiments/methods-and-bias.json -o methods\n"
     "Ctrl-C ends with status 130; the same command goes on where it stopped.\n",
-    { { options, 0, NULL }, { cli_common_options, 0, NULL } },
+    { { options, 0, NULL }, { noc_device_options, offsetof(A, device), NULL }, { cli_common_options, 0, NULL } },
     sizeof(experiment_args),
     &defaults,
     run,
@@ -105,7 +104,7 @@ static int run_spec(const experiment_args *args, const noc_lab_spec *spec, noc_l
     char *folder = output_folder(args, spec);
     noc_lab_params params = { .folder = folder,
                               .cache = args->cache,
-                              .threads = args->threads,
+                              .device = args->device,
                               .progress = progress,
                               .note = args->common.quiet ? NULL : note };
     noc_lab *lab;
@@ -119,10 +118,13 @@ static int run(void *arguments) {
     experiment_args *args = arguments;
     if (args->common.input_count != 1)
         return cli_usage(&cli_experiment, "one spec, a JSON file: docs/experiments.md tells what it holds");
+    int status = cli_check_device(&cli_experiment, &args->device);
+    if (status)
+        return status;
     noc_log *log = cli_log_create(&args->common);
     noc_lab_spec *spec;
     noc_status read = noc_lab_spec_read(args->common.inputs[0], &spec, log);
-    int status = read == NOC_ERR_FORMAT ? cli_read_on(&cli_experiment) : CLI_FAILURE;
+    status = read == NOC_ERR_FORMAT ? cli_read_on(&cli_experiment) : CLI_FAILURE;
     if (!read) {
         cli_catch_signals();
         cli_progress_start(args->common.quiet);

@@ -24,19 +24,13 @@ static const noc_option own_options[] = {
 };
 static const noc_option *options(void) { return own_options; }
 
-static const noc_option other_options[] = {
-    { "threads", "Influence", NOC_OPTION_INT, offsetof(render_args, threads), 0, 1024, NULL, "",
-      "threads; 0 = one a core" },
-    { NULL },
-};
-static const noc_option *of_threads(void) { return other_options; }
-
 static int run(void *arguments);
 
 static const influence_args defaults = {
     .render = { .command = &cli_influence,
                 .camera = noc_camera_default_params(),
                 .exposure = "auto",
+                .device = CLI_DEVICE,
                 .render = noc_render_default_params(),
                 .display = noc_display_default_params(),
                 .import = noc_import_default_params(),
@@ -88,7 +82,7 @@ const cli_command cli_influence = {
     "Coordinates are in the scene's CRS, of scenes that have none local metres; pixels are those of the camera's "
     "picture of --width by --height.\n",
     { { options, 0, NULL },
-      { of_threads, offsetof(A, render), NULL },
+      { noc_device_options, offsetof(A, render.device), NULL },
       { cli_camera_options, offsetof(A, render), NULL },
       { noc_camera_options, offsetof(A, render.camera), NULL },
       { noc_render_options, offsetof(A, render.render), of_pictures },
@@ -205,7 +199,7 @@ static noc_status work(influence_job *job) {
         status = noc_scene_place_camera(job->scene, &render->camera,
                                         (double)render->render.width / render->render.height, &job->camera, NULL);
     noc_scene_get_info(job->scene, &job->info);
-    job->device = status ? NULL : noc_device_create(&(noc_device_params){ .threads = render->threads }, job->log);
+    job->device = status ? NULL : noc_device_create(&render->device, job->log);
     job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
     if (!status && !job->view)
         status = NOC_ERR_MEMORY;

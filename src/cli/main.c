@@ -113,6 +113,7 @@ int main(int argc, char **argv) {
     if (!strcmp(name, "--version")) {
         printf("nocturne %s (%s, %s)\nisolation of foreign readers: %s\n", noc_version(), noc_features(),
                viewer_features(), noc_isolation());
+        cli_print_devices();
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
     if (!strcmp(name, "help") || !strcmp(name, "--help") || !strcmp(name, "-h"))

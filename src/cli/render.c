@@ -20,7 +20,6 @@ static const noc_option own_options[] = {
       "render for about so long instead; 0 = no limit" },
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
       "print times by pass, rays and the trace floor" },
-    { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
@@ -38,6 +37,7 @@ static const render_args defaults = {
     .frames = 32,
     .camera = noc_camera_default_params(),
     .exposure = "auto",
+    .device = CLI_DEVICE,
     .render = noc_render_default_params(),
     .display = noc_display_default_params(),
     .import = noc_import_default_params(),
@@ -68,6 +68,7 @@ const cli_command cli_render = {
       { of_picture, 0, NULL },
       { cli_exposure_options, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
+      { noc_device_options, offsetof(A, device), NULL },
       { noc_display_options, offsetof(A, display), by_exposure },
       { noc_import_options, offsetof(A, import), NULL },
       { noc_city_options, offsetof(A, builtin.city), NULL },
@@ -245,8 +246,8 @@ noc_status cli_start_view(render_job *job) {
     if (status)
         return status;
     cli_nothing_to_keep(true); /* until a frame is complete */
-    job->device = noc_device_create(&(noc_device_params){ .threads = job->args->threads }, job->log);
-    job->view = noc_view_create(job->device, job->scene);
+    job->device = noc_device_create(&job->args->device, job->log);
+    job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
     if (job->view && job->args->smooth)
         job->smoother = noc_smoother_create(job->device);
     return job->view && (job->smoother || !job->args->smooth) ? NOC_OK : NOC_ERR_MEMORY;

@@ -20,7 +20,7 @@ typedef struct render_args {
     const char *output;
     int frames;
     double time; /* s; 0: no limit */
-    int threads;
+    noc_device_params device;
     bool stats;
     bool smooth;
     int preset; /* noc_preset */
@@ -102,8 +102,8 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
 /* city.c: what render and view share. */
 const noc_option *cli_camera_options(void); /* --camera, which names one of the recipe */
 const noc_option *cli_exposure_options(void);
-/* All that can be wrong with inputs, camera, preset and exposure, before any file is read; once the camera is chosen.
- * CLI_OK or CLI_USAGE. */
+/* All that can be wrong with inputs, camera, preset, exposure and device, before any file is read; once the camera is
+ * chosen. CLI_OK, or an exit status after reporting. */
 int cli_check_city(render_args *args);
 /* Loads all inputs, and switches those of a built city. report may be NULL. */
 noc_status cli_load_city(render_args *args, noc_scene *scene, const noc_progress *progress, noc_report **report);

@@ -36,7 +36,8 @@ static void add_options(meta_text *meta, const render_args *args) {
                                                           "stats",   "frames", "size",       "exposure",   "time",
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
                                                           "help",    "lamps",  "animate",    "overwrite",  "mp4",
-                                                          "path",    "tracks", "show-scale", "isolines",   NULL };
+                                                          "path",    "tracks", "show-scale", "isolines",   "backend",
+                                                          "device",  NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
@@ -199,6 +200,7 @@ static double ev100(const render_job *job) {
 noc_status cli_write_picture(render_job *job) {
     const render_args *args = job->args;
     const noc_camera *c = &job->camera;
+    const noc_device_info *device = noc_device_get_info(noc_view_device(job->view));
     free(job->room);
     job->room = NULL;
     noc_image_destroy(job->image); /* of an animation's picture before */
@@ -211,6 +213,8 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "lamps", join_names(args->import.lamps.text, args->import.lamps.count));
     add(&meta, "tracks", join_names(args->import.tracks.text, args->import.tracks.count));
     add(&meta, "frames", cli_format("%d", job->averaged));
+    add(&meta, "backend", cli_format("%s", noc_backend_name(device->backend)));
+    add(&meta, "device", cli_format("%s", device->name));
     if (job->animation)
         add(&meta, "animation", cli_format("%s", job->animation));
     add(&meta, "camera-eye", cli_format("%.17g %.17g %.17g", c->eye[0], c->eye[1], c->eye[2]));
@@ -398,6 +402,7 @@ static void print_map(const render_job *job) {
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
+    const noc_device_info *device = noc_device_get_info(job->device);
     char a[64], b[64], c[32], name[24] = "", path[240];
     if (!args->animation.on)
         printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
@@ -430,6 +435,7 @@ void cli_print_summary(const render_job *job) {
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],
            job->camera.fov_deg);
+    printf("  device    %s, %s\n", noc_backend_name(device->backend), noc_text_clean(path, sizeof(path), device->name));
     printf("  time      %s: loading %s, ", noc_text_seconds(a, cli_now() - job->started),
            noc_text_seconds(b, job->loaded - job->started));
     printf("ray tracing structure %s, ", noc_text_seconds(a, job->last.build_seconds));

@@ -46,8 +46,6 @@ static const noc_option *options(void) { return own_options; }
 
 static const noc_option estimator_options[] = {
     NOC_OPTION_PRESET(render_args, "Estimator"),
-    { "threads", "Viewer", NOC_OPTION_INT, offsetof(render_args, threads), 0, 1024, NULL, "",
-      "threads; 0 = one a core" },
     { NULL },
 };
 static const noc_option *of_estimator(void) { return estimator_options; }
@@ -59,6 +57,7 @@ static const view_args defaults = {
                 .preset = NOC_PRESET_INTERACTIVE,
                 .camera = noc_camera_default_params(),
                 .exposure = "auto",
+                .device = CLI_DEVICE,
                 .render = noc_render_default_params(),
                 .display = noc_display_default_params(),
                 .import = noc_import_default_params(),
@@ -89,6 +88,7 @@ const cli_command cli_view = {
       { cli_camera_options, offsetof(A, render), NULL },
       { noc_camera_options, offsetof(A, render.camera), NULL },
       { noc_render_options, offsetof(A, render.render), by_page },
+      { noc_device_options, offsetof(A, render.device), NULL },
       { cli_exposure_options, offsetof(A, render), NULL },
       { noc_display_options, offsetof(A, render.display), by_exposure },
       { noc_import_options, offsetof(A, render.import), NULL },
@@ -238,7 +238,7 @@ static int view(view_args *args, noc_log *log) {
         .display = render->display,
         .show = render->show,
         .channel = render->range,
-        .threads = render->threads,
+        .device = render->device,
     };
     source.given = list_given(args, &source.given_count);
     viewer_params params = { args->address, args->port, args->clients, args->token, ended, listening, say, args };

@@ -89,18 +89,8 @@ static void name_build(lab_session *lab) {
 }
 
 void lab_name_machine(lab_session *lab) {
-    char line[256], model[128] = "unknown processor";
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    while (file && fgets(line, sizeof(line), file)) {
-        char *colon = strchr(line, ':');
-        if (!colon || strncmp(line, "model name", 10))
-            continue;
-        line[strcspn(line, "\n")] = 0;
-        noc_snprintf(model, sizeof(model), "%.120s", colon + 1 + strspn(colon + 1, " "));
-        break;
-    }
-    if (file)
-        fclose(file);
+    char model[121];
+    noc_processor_name(model, sizeof(model));
     struct utsname name = { .sysname = "" };
     uname(&name);
     noc_snprintf(lab->machine, sizeof(lab->machine), "%s, %ld processors, %.20s %.40s", model,
@@ -127,7 +117,7 @@ void lab_name_run(const lab_session *lab, lab_run *run) {
     if (fps > 0)
         hash_bytes(&hash, &fps, sizeof(fps));
     hash_bytes(&hash, &run->repetition, sizeof(run->repetition));
-    hash_bytes(&hash, &lab->params.threads, sizeof(lab->params.threads));
+    hash_bytes(&hash, &lab->params.device.threads, sizeof(lab->params.device.threads));
     hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling));
     hash_finish(&hash, run->key);
 }

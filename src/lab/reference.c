@@ -34,7 +34,7 @@ noc_status lab_load_scene(lab_session *lab, size_t index) {
     noc_import_params import = scene->import;
     import.progress = (noc_progress){ loading, lab };
     import.builtin = &scene->builtin;
-    import.threads = lab->params.threads;
+    import.threads = lab->params.device.threads;
     lab->scene = noc_scene_create(lab->log);
     if (!lab->scene)
         return NOC_ERR_MEMORY;
@@ -109,7 +109,7 @@ static void keep(const lab_session *lab, const char *path, const noc_lab_noise *
 static noc_status render(lab_session *lab, const char *view, noc_lab_noise *noise) {
     const lab_spec *spec = lab->spec;
     making m = { lab, view, 0, noc_wall_seconds() };
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = lab->params.threads }, lab->log);
+    noc_device *device = noc_device_create(&lab->params.device, lab->log);
     if (!device)
         return NOC_ERR_MEMORY;
     noc_status status = lab_render_reference(&(lab_making){ .device = device,

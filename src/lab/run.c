@@ -222,7 +222,7 @@ noc_status lab_measure_run(lab_session *lab, lab_run *run) {
     noc_status status = frames_missing(lab, run, &m.frames);
     if (status || !m.frames)
         return status;
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = lab->params.threads }, lab->log);
+    noc_device *device = noc_device_create(&lab->params.device, lab->log);
     if (!device)
         return NOC_ERR_MEMORY;
     bool mean = lab_has_mode(lab->spec, run->camera, LAB_ACCUMULATED);

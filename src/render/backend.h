@@ -59,9 +59,12 @@ typedef enum noc_row_kind { NOC_ROW_NOTHING, NOC_ROW_EMITTER, NOC_ROW_SURFACE, N
 
 struct noc_influence;
 typedef struct noc_backend {
-    const char *name;
-    /* Each of these sets its last argument on success only, and reports its errors. */
-    noc_status (*device_create)(const noc_device_params *params, noc_log *log, void **device);
+    /* Fills the first `capacity` devices but for backend and number, and returns how many there are, at least 1:
+     * without any, one without a name whose `why` says why. NULL: the processor is the only one. */
+    size_t (*devices)(noc_device_info *devices, size_t capacity);
+    /* Each of these sets its last argument on success only, and reports its errors. `number` is one that `devices` gave
+     * a usable device. */
+    noc_status (*device_create)(const noc_device_params *params, int number, noc_log *log, void **device);
     void (*device_destroy)(void *device);
     /* A scene on the device: builds the ray tracing structure. Any number of views, from several threads, share it. */
     noc_status (*world_create)(void *device, const noc_scene *scene, void **world);
@@ -107,6 +110,15 @@ typedef struct noc_backend {
 } noc_backend;
 
 extern const noc_backend noc_backend_embree, noc_backend_vulkan;
+
+/* devices.c */
+/* The backend of this build; NULL: it has none. */
+const noc_backend *noc_backend_of(noc_backend_id id);
+/* The device of a backend's list that `wanted` means, as noc_device_params.device does. What is wrong is reported. */
+noc_status noc_choose_device(const noc_device_info *list, size_t count, const char *wanted, noc_device_info *info,
+                             noc_log *log);
+/* NULL: no GPU of the list is usable. */
+const noc_device_info *noc_best_gpu(const noc_device_info *list, size_t count);
 
 /* frame.c */
 /* Everything of a camera that can be wrong, as one reported error. */

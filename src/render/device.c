@@ -1,30 +1,10 @@
-#include "noc_config.h"
 #include "render/device.h"
-
-static const noc_backend *const backends[] = {
-    &noc_backend_embree,
-#if NOC_HAVE_VULKAN
-    &noc_backend_vulkan,
-#endif
-};
-
-static const noc_backend *find_backend(const char *name, noc_log *log) {
-    for (size_t i = 0; i < NOC_COUNT(backends); i++)
-        if (!name || noc_ieq(name, backends[i]->name))
-            return backends[i];
-    noc_error(log, NOC_ERR_UNSUPPORTED, "device: no backend \"%s\" in this build (there is: embree)", name);
-    return NULL;
-}
 
 noc_device *noc_device_create(const noc_device_params *params, noc_log *log) {
     noc_device_params defaults = noc_device_default_params();
+    noc_device_info info;
     params = params ? params : &defaults;
-    if (params->threads < 0 || params->threads > 1024) {
-        noc_error(log, NOC_ERR_ARGUMENT, "device: threads is %d, must be in 0..1024", params->threads);
-        return NULL;
-    }
-    const noc_backend *backend = find_backend(params->backend, log);
-    if (!backend)
+    if (noc_device_find(params, &info, log))
         return NULL;
     noc_device *d = noc_calloc(1, sizeof(*d));
     if (!d) {
@@ -32,14 +12,19 @@ noc_device *noc_device_create(const noc_device_params *params, noc_log *log) {
         return NULL;
     }
     d->log = log;
-    d->backend = backend;
-    if (backend->device_create(params, log, &d->state) != NOC_OK) {
+    d->info = info;
+    d->backend = noc_backend_of(info.backend);
+    if (d->backend->device_create(params, info.number, log, &d->state) != NOC_OK) {
         free(d);
         return NULL;
     }
+    if (params->backend == NOC_BACKEND_AUTO)
+        noc_info(log, "device: %s, %s", noc_backend_name(info.backend), info.name);
     pthread_mutex_init(&d->lock, NULL);
     return d;
 }
+
+const noc_device_info *noc_device_get_info(const noc_device *device) { return device ? &device->info : NULL; }
 
 void noc_device_destroy(noc_device *d) {
     if (!d)

@@ -16,6 +16,7 @@ typedef struct noc_world {
 struct noc_device {
     noc_log *log;
     const noc_backend *backend;
+    noc_device_info info;
     void *state; /* the backend's */
     pthread_mutex_t lock;
     NOC_ARRAY(noc_world *) worlds;

@@ -257,6 +257,16 @@ static const noc_option camera_options[] = {
 };
 #undef P
 
+#define P noc_device_params
+static const noc_option device_options[] = {
+    INT(P, threads, "threads", "Device", 0, 1024, "", "threads of the processor; 0 = one a core"),
+    CHOICE(P, backend, "backend", "Device", "embree|vulkan|auto",
+           "what renders: processor or GPU; auto: a GPU with ray tracing, if any", .aliases = "cpu=embree"),
+    TEXT(P, device, "device", "Device", "GPU", "vulkan: part of a GPU's name, or its number (nocturne --version)"),
+    END,
+};
+#undef P
+
 const noc_option *noc_render_options(void) { return render_options; }
 const noc_option *noc_display_options(void) { return display_options; }
 const noc_option *noc_import_options(void) { return import_options; }
@@ -265,6 +275,7 @@ const noc_option *noc_group_options(void) { return group_options; }
 const noc_option *noc_city_options(void) { return city_options; }
 const noc_option *noc_builtin_options(void) { return builtin_options; }
 const noc_option *noc_camera_options(void) { return camera_options; }
+const noc_option *noc_device_options(void) { return device_options; }
 
 static bool has_input(const char *const *inputs, size_t count, const char *input) {
     for (size_t i = 0; i < count; i++)

@@ -45,7 +45,7 @@ typedef struct viewer_source {
     noc_display_params display;
     int show; /* the mode that they begin with: 0 is the picture, else 1 + noc_aov */
     noc_channel_params channel;
-    int threads; /* of the device; 0: one a core */
+    noc_device_params device;
 } viewer_source;
 
 typedef struct viewer_params {

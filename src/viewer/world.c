@@ -29,7 +29,7 @@ static bool progress(void *user, const char *what, double done) {
 
 static noc_status load(viewer_world *w) {
     noc_progress told = { progress, w };
-    w->device = noc_device_create(&(noc_device_params){ .threads = w->source->threads }, w->log);
+    w->device = noc_device_create(&w->source->device, w->log);
     noc_status status = w->device ? w->source->load(w->source->user, w->scene, &told, &w->report) : NOC_ERR_MEMORY;
     return status ? status : world_begin(w);
 }

@@ -8,7 +8,7 @@
 static inline cpu_view *open_cpu_view(const noc_scene *scene, int threads, noc_log *log) {
     const noc_backend *b = &noc_backend_embree;
     void *device = NULL, *world = NULL, *view = NULL;
-    if (b->device_create(&(noc_device_params){ .threads = threads }, log, &device) ||
+    if (b->device_create(&(noc_device_params){ .threads = threads }, 0, log, &device) ||
         b->world_create(device, scene, &world) || b->view_create(world, &view)) {
         if (world)
             b->world_destroy(world);

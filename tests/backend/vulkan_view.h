@@ -125,8 +125,8 @@ static inline noc_status answer_by_cpu(void *user, const vk_step *step) {
 
 /* False where there is no device that traces rays, after saying so. */
 static inline bool open_twins(const noc_scene *scene, bool same_rays, noc_log *log, twins *t) {
-    *t = (twins){ .cpu_device = noc_device_create(&(noc_device_params){ .backend = "embree" }, log),
-                  .device = noc_device_create(&(noc_device_params){ .backend = "vulkan" }, log) };
+    *t = (twins){ .cpu_device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_EMBREE }, log),
+                  .device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, log) };
     assert_non_null(t->cpu_device);
     if (!t->device) {
         print_message("# skipped: %s\n", noc_log_last_error(log));

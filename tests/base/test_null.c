@@ -252,6 +252,9 @@ static noc_camera camera;
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
     P(noc_device_destroy(noc_device_create(NULL, NULL)), true)                                                         \
     P(noc_device_destroy(NULL), true)                                                                                  \
+    P(0, noc_devices(NULL, 1) >= 2)                                                                                    \
+    P(0, noc_device_find(NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                        \
+    P(0, noc_device_get_info(NULL) == NULL)                                                                            \
     P(0, noc_view_create(NULL, scene) == NULL)                                                                         \
     P(0, noc_view_create(noc_view_device(view), NULL) == NULL)                                                         \
     P(0, noc_view_device(NULL) == NULL)                                                                                \

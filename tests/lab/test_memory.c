@@ -58,7 +58,7 @@ static noc_status work(const noc_lab_spec *spec, noc_log *log, size_t *rows) {
     noc_lab *lab;
     noc_lab_state told;
     snprintf(cache, sizeof(cache), "%s/cache", folder);
-    noc_lab_params params = { .folder = folder, .cache = cache, .threads = 1 };
+    noc_lab_params params = { .folder = folder, .cache = cache, .device.threads = 1 };
     noc_status status = noc_lab_create(spec, &params, &lab, log);
     status = status ? status : noc_lab_run(lab);
     status = status ? status : noc_lab_write_report(lab);

@@ -8,16 +8,16 @@ static noc_render_params render;
 static noc_display_params display;
 static noc_import_params import;
 static noc_city_params city;
+static noc_device_params device;
 
 static const struct {
     const noc_option *(*table)(void);
     void *params;
     size_t size;
 } tables[] = {
-    { noc_render_options, &render, sizeof(render) },
-    { noc_display_options, &display, sizeof(display) },
-    { noc_import_options, &import, sizeof(import) },
-    { noc_city_options, &city, sizeof(city) },
+    { noc_render_options, &render, sizeof(render) }, { noc_display_options, &display, sizeof(display) },
+    { noc_import_options, &import, sizeof(import) }, { noc_city_options, &city, sizeof(city) },
+    { noc_device_options, &device, sizeof(device) },
 };
 
 static int setup(void **state) {
@@ -25,6 +25,7 @@ static int setup(void **state) {
     display = noc_display_default_params();
     import = noc_import_default_params();
     city = noc_city_default_params();
+    device = noc_device_default_params();
     return 0;
 }
 
@@ -197,6 +198,11 @@ static noc_status take_city(noc_log *log) {
     return status;
 }
 
+static noc_status take_device(noc_log *log) {
+    noc_device_info info;
+    return noc_device_find(&device, &info, log);
+}
+
 /* The field's number; of texts, how many there are. */
 static void put(const noc_option *o, void *params, double value) {
     void *field = (char *)params + o->offset;
@@ -221,6 +227,7 @@ static void rows_hold_for_params(void **state) {
         { noc_render_options, &render, take_render, "render" },
         { noc_import_options, &import, take_import, "import" },
         { noc_city_options, &city, take_city, "city" },
+        { noc_device_options, &device, take_device, "device" },
     };
     for (size_t t = 0; t < NOC_COUNT(takers); t++)
         for (const noc_option *o = takers[t].table(); o->name; o++) {

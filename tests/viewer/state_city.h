@@ -58,7 +58,7 @@ static inline void set_city(state_city *c, bool builtin) {
                                  .camera = noc_camera_default_params(),
                                  .render = noc_render_default_params(),
                                  .display = noc_display_default_params(),
-                                 .threads = 2 };
+                                 .device.threads = 2 };
     noc_render_use_preset(&c->source.render, NOC_PRESET_INTERACTIVE);
 }
 

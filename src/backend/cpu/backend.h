@@ -31,7 +31,7 @@ void noc_cpu_clear(void *view, const noc_sight *sights, size_t count, uint8_t *c
 void noc_cpu_record(void *view, bool on);
 noc_status noc_cpu_replay(void *view, noc_trace_floor *floor);
 
-/* All of a noc_backend but its name and the creation of a device. */
+/* All of a noc_backend but the creation of a device. */
 #define NOC_CPU_BACKEND                                                                                                \
     .device_destroy = noc_cpu_device_destroy, .world_create = noc_cpu_world_create,                                    \
     .world_destroy = noc_cpu_world_destroy, .view_create = noc_cpu_view_create, .view_destroy = noc_cpu_view_destroy,  \

@@ -198,8 +198,8 @@ static const noc_tracer tracer = { .name = "embree",
                                    .closest = closest,
                                    .occluded = occluded };
 
-static noc_status create(const noc_device_params *params, noc_log *log, void **device) {
+static noc_status create(const noc_device_params *params, int number, noc_log *log, void **device) {
     return noc_cpu_device_create(&tracer, params, log, device);
 }
 
-const noc_backend noc_backend_embree = { .name = "embree", .device_create = create, NOC_CPU_BACKEND };
+const noc_backend noc_backend_embree = { .device_create = create, NOC_CPU_BACKEND };

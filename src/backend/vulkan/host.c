@@ -13,7 +13,7 @@ static noc_status open_host(vk_view *v) {
         return NOC_OK;
     pthread_mutex_lock(&d->host_lock);
     if (!d->host)
-        status = cpu->device_create(&d->params, d->log, &d->host);
+        status = cpu->device_create(&d->params, 0, d->log, &d->host);
     if (status == NOC_OK && !w->host)
         status = cpu->world_create(d->host, w->scene, &w->host);
     if (status == NOC_OK)

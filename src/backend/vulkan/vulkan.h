@@ -225,10 +225,32 @@ typedef struct vk_view {
     void *host;                  /* the CPU backend's view; NULL: no question was asked yet */
 } vk_view;
 
+/* devices.c */
+enum { VK_EXTENSIONS = 3 };
+extern const char *const noc_vk_extensions[VK_EXTENSIONS]; /* of devices; every one is needed */
+
+/* Features that are switched on. */
+typedef struct vk_features {
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR rays;
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structures;
+    VkPhysicalDeviceVulkan12Features v12;
+    VkPhysicalDeviceFeatures2 all; /* the head of the chain */
+} vk_features;
+void noc_vk_chain_features(vk_features *f); /* all off */
+
+#define VK_VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
+/* Loads the Vulkan loader and makes an instance, with the validation layer unless `messages` is NULL. Returns why there
+ * is none; NULL: it is made. */
+const char *noc_vk_make_instance(const VkDebugUtilsMessengerCreateInfoEXT *messages, VkInstance *instance);
+VkPhysicalDevice noc_vk_physical_device(VkInstance instance, int number); /* VK_NULL_HANDLE: it is not there */
+/* The number of a queue family that computes, and how many bits of its timestamps count. UINT32_MAX: none. */
+uint32_t noc_vk_compute_family(VkPhysicalDevice physical, uint32_t *bits);
+size_t noc_vk_devices(noc_device_info *devices, size_t capacity);
+
 /* device.c */
 /* Reports a result that is no success, once; a lost device once for all that follows. what: "building ...". */
 noc_status noc_vk_failed(vk_device *d, VkResult result, const char *what);
-noc_status noc_vk_device_create(const noc_device_params *params, noc_log *log, void **device);
+noc_status noc_vk_device_create(const noc_device_params *params, int number, noc_log *log, void **device);
 void noc_vk_device_destroy(void *device);
 
 /* memory.c */
