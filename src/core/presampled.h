@@ -53,7 +53,7 @@ typedef struct presample_steer presample_steer;
 FN presample presample_load(CTX int i);
 FN real presample_inverse(CTX int i);
 FN presample_pick presample_pick_load(CTX u32 i);
-/* Sums of the weights of candidates 0 to i. */
+/* Sums of the weights of candidates 0 to i: of ris_presampled alone. */
 FN void weighed_store(CTX int i, real sum);
 FN real weighed_load(CTX int i);
 FN real weighed_at(CTX u32 i);
@@ -151,27 +151,19 @@ FN presample_steer presample_look(surf s, sketch_surf q, presample e) {
     return p;
 }
 
-/* Streaming RIS over candidates 0 to m - 1, without the stream: their sums are kept, and one number chooses.
- * W = (1/m) sum(w) / (w(chosen) pmf(chosen)), w what chose, over pmf. xi: in [0, 1). */
-FN reservoir ris_presampled(CTX surf s, real xi, int m) {
-    sketch_surf q = sketch_surf_of(s);
-    real sum = K(0.0f);
-    for (int i = 0; i < m; i++) {
-        presample_steer c = presample_look(s, q, presample_load(PASS i));
-        if (SELDOM(ANY(c.near))) {
-            presample_pick k = presample_pick_load(PASS KU(U32(i)));
-            c.p = sel(c.near, target(PASS s, light_load(PASS k.light), unit_low(k.place), unit_high(k.place)), c.p);
-        }
-        EXACT real all = sum + c.p * presample_inverse(PASS i);
-        sum = all;
-        weighed_store(PASS i, sum);
+/* What chooses candidate i of the pixel: its target, about, over its pmf, added to the weights before. */
+FN real presample_sum(CTX surf s, sketch_surf q, real before, int i) {
+    presample_steer c = presample_look(s, q, presample_load(PASS i));
+    if (SELDOM(ANY(c.near))) {
+        presample_pick k = presample_pick_load(PASS KU(U32(i)));
+        c.p = sel(c.near, target(PASS s, light_load(PASS k.light), unit_low(k.place), unit_high(k.place)), c.p);
     }
-    EXACT real goal = xi * sum;
-    u32 chosen = KU(0u);
-    for (int i = 0; i < m - 1; i++)
-        chosen = chosen + selu(weighed_load(PASS i) <= goal, KU(1u), KU(0u));
-    real before = sel(chosen > KU(0u), weighed_at(PASS selu(chosen > KU(0u), chosen - KU(1u), KU(0u))), K(0.0f));
-    EXACT real weight = weighed_at(PASS chosen) - before; /* as it was chosen, to the bit */
+    EXACT real sum = before + c.p * presample_inverse(PASS i);
+    return sum;
+}
+
+/* The reservoir of candidate `chosen` of m, of which one was chosen by weights of this sum, its own as it was added. */
+FN reservoir presample_reservoir(CTX surf s, u32 chosen, real weight, real sum, int m) {
     presample_pick k = presample_pick_load(PASS chosen);
     reservoir r;
     r.light = k.light;
@@ -183,6 +175,47 @@ FN reservoir ris_presampled(CTX surf s, real xi, int m) {
     EXACT real w = sum * k.inverse / (K(F32(m)) * sel(some, weight, K(1.0f)));
     r.w = sel(and_(some, w < K(1e30f)), w, K(0.0f));
     return r;
+}
+
+/* Streaming RIS over candidates 0 to m - 1, without the stream: their sums are kept, and one number chooses.
+ * W = (1/m) sum(w) / (w(chosen) pmf(chosen)), w what chose, over pmf. xi: in [0, 1). */
+FN reservoir ris_presampled(CTX surf s, real xi, int m) {
+    sketch_surf q = sketch_surf_of(s);
+    real sum = K(0.0f);
+    for (int i = 0; i < m; i++) {
+        sum = presample_sum(PASS s, q, sum, i);
+        weighed_store(PASS i, sum);
+    }
+    EXACT real goal = xi * sum;
+    u32 chosen = KU(0u);
+    for (int i = 0; i < m - 1; i++)
+        chosen = chosen + selu(weighed_load(PASS i) <= goal, KU(1u), KU(0u));
+    real before = sel(chosen > KU(0u), weighed_at(PASS selu(chosen > KU(0u), chosen - KU(1u), KU(0u))), K(0.0f));
+    EXACT real weight = weighed_at(PASS chosen) - before; /* as it was chosen, to the bit */
+    return presample_reservoir(PASS s, chosen, weight, sum, m);
+}
+
+/* The same bits where there is no room for the sums: they are added up again as far as the number that chooses. */
+FN reservoir ris_presampled_twice(CTX surf s, real xi, int m) {
+    sketch_surf q = sketch_surf_of(s);
+    real sum = K(0.0f);
+    for (int i = 0; i < m; i++)
+        sum = presample_sum(PASS s, q, sum, i);
+    EXACT real goal = xi * sum;
+    u32 chosen = KU(0u);
+    real before = K(0.0f);
+    real weight = K(0.0f);
+    for (int i = 0; i < m; i++) {
+        mask on = or_(KU(U32(i)) == KU(0u), before <= goal);
+        if (ANY(on)) {
+            real after = presample_sum(PASS s, q, before, i);
+            EXACT real w = after - before;
+            chosen = selu(on, KU(U32(i)), chosen);
+            weight = sel(on, w, weight);
+            before = sel(on, after, before);
+        }
+    }
+    return presample_reservoir(PASS s, chosen, weight, sum, m);
 }
 
 #endif

@@ -54,6 +54,7 @@ static void plans_have_the_same_bits(void **state) {
         { "ris", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, true, 1 },
         { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER, NOC_BIAS_PAIRWISE, true, false, true, 1 },
         { "ris, light-bvh", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, NOC_BIAS_PAIRWISE, true, true, true, 1 },
+        { "ris, many", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, true, 1 },
         { "ris, no rays", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, false, 1 },
         { "biased", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_BIASED, true, true, true, 1 },
         { "mis", NOC_METHOD_RESTIR, NOC_CANDIDATES_POWER, NOC_BIAS_MIS, true, true, true, 2 },
@@ -83,6 +84,7 @@ static void plans_have_the_same_bits(void **state) {
         p.final_ray = plans[i].final_ray;
         p.passes = plans[i].passes;
         p.rays = 20;
+        p.draws = strstr(plans[i].name, "many") ? 200 : 32;
         expect_same_bits(&t, &camera, &p, p.method == NOC_METHOD_REFERENCE ? 1 : 3, plans[i].name);
     }
     close_twins(&t);

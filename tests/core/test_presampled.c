@@ -134,6 +134,8 @@ static void mean_over_choices(bool glossy, double *off, double *off_by_targets) 
         }
         for (int k = 0; k < CHOICES; k++) {
             reservoir r = ris_presampled(PASS s, ((float)k + .5f) / CHOICES, M);
+            reservoir again = ris_presampled_twice(PASS s, ((float)k + .5f) / CHOICES, M);
+            assert_memory_equal(&r, &again, sizeof(r));
             assert_true(r.m == M);
             if (!(r.w > 0))
                 continue;

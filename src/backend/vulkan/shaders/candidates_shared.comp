@@ -16,7 +16,7 @@ void main() {
         row_ = high_u32(presample_key(FRAME.seed, p.block, FRAME.index, 1u), HERE.subsets) * HERE.draws;
         lane_ = p.lane;
         float xi = rng(key_at(p, FRAME.index), DIM_CANDIDATE);
-        q = ris_presampled(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
+        q = ris_presampled_twice(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
     }
     reservoir_put(HERE.target, p.block, p.lane, q);
     HERE.target_visible.at[p.slot] = 0u;

@@ -3,7 +3,6 @@
 
 uint row_; /* of HERE.samples: the first one of the subset */
 uint lane_;
-float weighed_[32];
 
 presample presample_load(int i) {
     uint r = row_ + uint(i), l = lane_;
@@ -35,6 +34,7 @@ presample_pick presample_pick_load(uint i) {
     uint r = row_ + i, l = lane_;
     return presample_pick(HERE.samples.at[r].light[l], HERE.samples.at[r].place[l], HERE.samples.at[r].inverse[l]);
 }
-void weighed_store(int i, float s) { weighed_[i] = s; }
-float weighed_load(int i) { return weighed_[i]; }
-float weighed_at(uint i) { return weighed_[i]; }
+/* Shaders have no room for the sums of a pixel's weights: they use ris_presampled_twice. */
+void weighed_store(int i, float s) {}
+float weighed_load(int i) { return 0.0; }
+float weighed_at(uint i) { return 0.0; }
