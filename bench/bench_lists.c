@@ -173,7 +173,7 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
             if (!any)
                 continue;
             u32 key = rng_key(1, (uint32_t)t, (uint32_t)round);
-            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &lists->build);
+            e->kernels->list_build(&ctx, g, lanes, n, rng_bits(key, DIM_LIST), &lists->build);
             entries += lists->build.list.count;
             tiles++;
             double before = noc_cpu_seconds();

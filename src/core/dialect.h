@@ -17,7 +17,8 @@
  * KU(u1) and spread3(f3) spread them over the lanes. FN1 marks functions of such values only, CALL those that are so
  * long that they stay calls. What is looked at 16 at a time is walked by EACH16(l), which gives the first of LANES
  * places that a lane value holds; lane_bits, lane_sum and lane_max bring lanes back to one value. Writing goes through
- * bridge functions, too. */
+ * bridge functions, too. Work on a tile that a shader's work group may share out is walked by EACH_GROUP and
+ * EACH_INDEX, with SETTLE between what one worker stores and another one loads. */
 #ifndef CORE_DIALECT_H
 #define CORE_DIALECT_H
 
@@ -68,6 +69,7 @@
 #define bits_of_f1 floatBitsToUint
 #define bit_count(a) uint(bitCount(a))
 #define low_bit(a) uint(findLSB(a))
+#define high_u1 high_u32
 float min1(float a, float b) { return a < b ? a : b; }
 float max1(float a, float b) { return a > b ? a : b; }
 uint minu1(uint a, uint b) { return a < b ? a : b; }
@@ -113,6 +115,7 @@ FN1 f1 max1(f1 a, f1 b) { return a > b ? a : b; }
 FN1 u1 minu1(u1 a, u1 b) { return a < b ? a : b; }
 FN1 u1 bit_count(u1 a) { return (u1)__builtin_popcount(a); }
 FN1 u1 low_bit(u1 a) { return (u1)__builtin_ctz(a); }
+FN1 u1 high_u1(u1 a, u1 b) { return (u1)((uint64_t)a * b >> 32); }
 FN1 f1 f1_of_bits(u1 bits) {
     f1 x;
     __builtin_memcpy(&x, &bits, sizeof(x));
@@ -200,9 +203,22 @@ typedef struct {
 #define EACH16_MAX(x) (x)
 #endif
 
+/* Workers: one does everything in order, in C and in a shader whose invocations have a tile each. A shader whose work
+ * group shares a tile defines these before inclusion, and then calls its functions with all of its invocations.
+ * EACH_INDEX shares out the numbers below n. EACH_GROUP shares out groups of 16 places, and every place of a group has
+ * its worker, always the same one: what that worker has stored there, it may load without SETTLE. FROM_FIRST(x) is x of
+ * the one worker for which FIRST_WORKER is true. */
+#ifndef EACH_INDEX
+#define EACH_INDEX(i, n) for (u1 i = 0u; i < (n); i++)
+#define EACH_GROUP(g, begin, end) for (u1 g = (begin); g < (end); g++)
+#define SETTLE
+#define FIRST_WORKER true
+#define FROM_FIRST(x) (x)
+#endif
+
 /* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.
- * high_u32 is the upper half of the 64-bit product. low_bit: number of the lowest bit that is set, of a value other
- * than 0. */
+ * high_u32 and high_u1 are the upper half of the 64-bit product. low_bit: number of the lowest bit that is set, of a
+ * value other than 0. */
 
 FN v3 add3(v3 a, v3 b) { return V3(a.x + b.x, a.y + b.y, a.z + b.z); }
 FN v3 sub3(v3 a, v3 b) { return V3(a.x - b.x, a.y - b.y, a.z - b.z); }

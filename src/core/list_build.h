@@ -9,6 +9,7 @@
 #define CORE_LIST_BUILD_H
 
 #include "core/list_scores.h"
+#include "core/list_tail.h"
 
 /* A hierarchy of clusters: how many levels it has, and how many nodes its highest one. */
 struct list_top {
@@ -35,16 +36,11 @@ struct list_size {
     u1 copies; /* of every light: count / copies are told apart */
 };
 
-/* Groups from `first` to `count` are of lights. */
-struct list_opened {
-    u1 first;
-    u1 count;
-};
-
-/* A place among 16, and where in it: 0 to 1. 16: none. */
-struct list_place {
-    u1 place;
-    f1 at;
+/* What is chosen before the tail: so many groups, entries, and draws that are left to the tail. */
+struct list_chosen {
+    u1 groups;
+    u1 entries;
+    u1 draws;
 };
 
 /* A light, and the probability of having been found; 0: none was. */
@@ -58,8 +54,7 @@ typedef struct list_top list_top;
 typedef struct list_group list_group;
 typedef struct list_entry list_entry;
 typedef struct list_size list_size;
-typedef struct list_opened list_opened;
-typedef struct list_place list_place;
+typedef struct list_chosen list_chosen;
 typedef struct list_found list_found;
 #endif
 
@@ -67,8 +62,10 @@ FN list_top top_load(CTX u1 part);
 FN u1 cluster_light(CTX u1 part, u1 cluster, u1 place);
 FN void list_group_store(CTX u1 group, list_group g);
 FN list_group list_group_load(CTX u1 group);
-FN void group_sum_store(CTX u1 group, f1 sum);
-FN f1 group_sum(CTX u1 group);
+FN void parent_store(CTX u1 i, f1 score); /* of the node whose children are group i of the level at hand */
+FN f1 parent_load(CTX u1 i);
+FN void line_store(CTX u1 group, u1 before); /* parts of the tail's line that lie before the group's */
+FN u1 line_load(CTX u1 group);
 FN void entry_store(CTX u1 i, list_entry e); /* of the tile's list: LIST_ROOM of them */
 FN list_entry entry_load(CTX u1 i);
 
@@ -80,60 +77,120 @@ FN1 void score_group(CTX list_group g, u1 patches, f1 score, u1 group) {
         score_lights(PASS g.part, g.block, patches, score, group);
 }
 
-/* How many nodes of the lowest level reached are to be opened: all, where they are few, for then their lights may all
- * be listed; else those that hold more than a 3,000th of all scores; never more than `most`. */
-FN1 u1 worth_opening(CTX u1 begin, u1 end, u1 most) {
-    f1 all = 0.0f;
-    for (u1 g = 0u; g < end; g++)
-        all = all + score_sum(PASS g);
-    if (scores_over(PASS begin, end, 1.17549435e-38f) <= U32(FEW_NODES))
-        return U32(FEW_NODES);
-    return minu1(most, scores_over(PASS begin, end, max1(all * (1.0f / 3000.0f), 1.17549435e-38f)));
+/* ---- the strongest ---- */
+
+/* Stores the groups of a hierarchy's highest level, from number `group` on. Returns how many. */
+FN1 u1 top_groups(CTX u1 part, u1 group) {
+    list_top top = top_load(PASS part);
+    u1 blocks = (top.nodes + 15u) / 16u;
+    EACH_INDEX(b, blocks) {
+        list_group g;
+        g.part = part;
+        g.level = top.levels;
+        g.block = b;
+        list_group_store(PASS group + b, g);
+    }
+    return blocks;
 }
 
-/* Groups from the top levels down to lights. */
-FN1 list_opened open_nodes(CTX u1 patches) {
-    list_top still = top_load(PASS 0u);
-    list_top moving = top_load(PASS 1u);
-    list_opened o;
-    o.first = 0u;
-    o.count = 0u;
-    u1 level = still.levels;
-    if (moving.levels > level)
-        level = moving.levels;
-    for (; level > 0u; level--) {
-        for (u1 k = 0u; k < 2u; k++) {
-            list_top top = still;
-            if (k == 1u)
-                top = moving;
-            for (u1 b = 0u; top.levels == level && b < (top.nodes + 15u) / 16u; b++) {
-                list_group g;
-                g.part = k;
-                g.level = level;
-                g.block = b;
-                list_group_store(PASS o.count, g);
-                score_group(PASS g, patches, 0.0f, o.count);
-                o.count++;
-            }
-        }
-        u1 most = U32(OPENED_CLUSTERS);
+/* How many of the nodes that were reached last, of which `some` have a score, are to be opened: all where they are few,
+ * for then their lights may all be listed; else those that hold more than a 3,000th of all scores, up to a limit. */
+FN1 u1 worth_opening(CTX u1 begin, u1 end, u1 level, u1 some) {
+    u1 most = U32(FEW_NODES);
+    if (some > U32(FEW_NODES)) {
+        most = U32(OPENED_CLUSTERS);
         if (level > 1u)
             most = U32(OPENED_NODES);
-        u1 open = choose_largest(PASS o.first, o.count, worth_opening(PASS o.first, o.count, most));
-        o.first = o.count;
-        for (u1 i = 0u; i < open; i++) {
-            u1 chosen = chosen_load(PASS i);
-            list_group g = list_group_load(PASS chosen / 16u);
-            g.level--;
-            g.block = 16u * g.block + chosen % 16u;
-            list_group_store(PASS o.count, g);
-            score_group(PASS g, patches, score_at(PASS chosen / 16u, chosen % 16u), o.count);
-            score_clear(PASS chosen / 16u, chosen % 16u);
-            o.count++;
+        f1 all = groups_sum(PASS end);
+        most = minu1(most, scores_over(PASS begin, end, max1(all * (1.0f / 3000.0f), 1.17549435e-38f)));
+    }
+    return most;
+}
+
+/* Place `place` of a group is chosen, as number i of its level: a node's children become a group, number `to`, and a
+ * light becomes an entry. */
+FN1 void take_place(CTX u1 group, u1 place, u1 i, u1 to) {
+    list_group g = list_group_load(PASS group);
+    if (g.level > 0u) {
+        parent_store(PASS i, score_at(PASS group, place));
+        g.level--;
+        g.block = 16u * g.block + place;
+        list_group_store(PASS to, g);
+    } else {
+        list_entry e;
+        e.light = cluster_light(PASS g.part, g.block, place);
+        e.weight = 1.0f;
+        entry_store(PASS i, e);
+    }
+    score_clear(PASS group, place);
+}
+
+/* Takes what a cut leaves of the groups, in the order of their places. Returns how many. */
+#ifdef CORE_WORKERS
+u1 take_places(u1 begin, u1 end, score_cut c);
+#else
+FN1 u1 take_places(CTX u1 begin, u1 end, score_cut c) {
+    f1 sure = score_step(c.sure);
+    f1 tie = score_step(c.sure - U32(c.sure > 1u));
+    u1 room = c.room;
+    u1 n = 0u;
+    for (u1 g = begin; g < end; g++) {
+        u1 over = places_over(PASS g, sure);
+        for (u1 bits = places_over(PASS g, tie); bits != 0u; bits = bits & (bits - 1u)) {
+            u1 place = low_bit(bits);
+            b1 sharing = (over >> place & 1u) == 0u;
+            if (!sharing || room > 0u) {
+                take_place(PASS g, place, n, end + n);
+                n++;
+                if (sharing)
+                    room--;
+            }
         }
     }
-    return o;
+    return n;
 }
+#endif
+
+/* Opens nodes level by level, and lists the strongest lights: `listed` of them, or, where nothing is left for a tail of
+ * `drawn`, all. */
+FN1 list_chosen list_strongest(CTX u1 patches, u1 listed, u1 drawn) {
+    list_chosen c;
+    c.groups = 0u;
+    c.entries = 0u;
+    c.draws = drawn;
+    u1 level = top_load(PASS 0u).levels;
+    if (top_load(PASS 1u).levels > level)
+        level = top_load(PASS 1u).levels;
+    u1 first = 0u;
+    u1 closed = 0u; /* nodes with a score that were not opened */
+    b1 on = level > 0u;
+    while (on) {
+        for (u1 part = 0u; part < 2u; part++)
+            if (level > 0u && top_load(PASS part).levels == level)
+                c.groups = c.groups + top_groups(PASS part, c.groups);
+        SETTLE;
+        EACH_GROUP(g, first, c.groups)
+        score_group(PASS list_group_load(PASS g), patches, parent_load(PASS g - first), g);
+        u1 some = some_scores(PASS first, c.groups);
+        u1 most = listed;
+        if (level > 0u)
+            most = worth_opening(PASS first, c.groups, level, some);
+        else if (closed == 0u && some <= listed + drawn)
+            most = listed + drawn;
+        u1 taken = take_places(PASS first, c.groups, cut_scores(PASS first, c.groups, most));
+        closed = closed + some - minu1(some, taken);
+        on = level > 0u;
+        if (on) {
+            first = c.groups;
+            c.groups = c.groups + taken;
+            level--;
+        } else
+            c.entries = taken;
+    }
+    return c;
+}
+
+/* ---- the tail ---- */
 
 /* The place that holds the share `at` (0..1) of a group's scores, and what is left of that there, as a share of the
  * place's own. */
@@ -187,84 +244,71 @@ FN1 list_found descend(CTX u1 patches, list_group g, list_place from, f1 score) 
     return f;
 }
 
-/* `draws` systematic draws over the nodes that stayed closed and the lights that were not listed. Returns the entries
- * that there are then. */
-FN1 u1 draw_tail(CTX u1 patches, u1 groups, u1 draws, f1 rotation, u1 count) {
-    long_sum total;
-    total.high = 0.0f;
-    total.low = 0.0f;
+/* Lays the groups' parts on a line. Returns its length. */
+#ifdef CORE_WORKERS
+u1 lay_line(u1 groups, f1 scale);
+u1 find_tail(u1 patches, list_chosen c, f1 scale, tail_line line);
+#else
+FN1 u1 lay_line(CTX u1 groups, f1 scale) {
+    u1 all = 0u;
     for (u1 g = 0u; g < groups; g++) {
-        f1 one = score_sum(PASS g);
-        group_sum_store(PASS g, one);
-        if (one > 0.0f)
-            total = long_add(total, one);
+        u32 parts = KU(0u);
+        line_store(PASS g, all);
+        EACH16(l)
+        parts = parts + tail_parts(score_load(PASS g, l), scale);
+        all = all + EACH16_SUM(lane_sum(parts));
     }
-    if (!(total.high > 0.0f) || draws == 0u)
-        return count;
-    EXACT f1 step = total.high / F32(draws);
-    EXACT f1 first = step * rotation;
-    long_sum next;
-    next.high = first;
-    next.low = 0.0f;
-    long_sum before;
-    before.high = 0.0f;
-    before.low = 0.0f;
-    u1 drawn = 0u;
-    u1 most = minu1(draws, U32(LIST_ROOM) - count);
-    for (u1 g = 0u; g < groups && drawn < most; g++) {
-        f1 sum = group_sum(PASS g);
-        if (sum > 0.0f) {
-            long_sum after = long_add(before, sum);
-            for (; drawn < most && long_difference(next, after) < 0.0f; drawn++) {
-                EXACT f1 at = long_difference(next, before) / sum;
-                next = long_add(next, step);
-                list_place p = place_at(PASS g, sum, at);
-                if (p.place < 16u) {
-                    f1 score = score_at(PASS g, p.place);
-                    list_found f = descend(PASS patches, list_group_load(PASS g), p, score);
-                    if (f.share > 0.0f) {
-                        EXACT f1 weight = step / score / f.share;
-                        list_entry e;
-                        e.light = f.light;
-                        e.weight = weight;
-                        entry_store(PASS count, e);
-                        count++;
-                    }
-                }
-            }
-            before = after;
+    line_store(PASS groups, all);
+    return all;
+}
+
+/* Adds what the draws find to the entries. Returns how many there are then. */
+FN1 u1 find_tail(CTX u1 patches, list_chosen c, f1 scale, tail_line line) {
+    u1 count = c.entries;
+    u1 goal = line.first;
+    u1 most = minu1(c.draws, U32(LIST_ROOM) - count);
+    u1 g = 0u;
+    for (u1 k = 0u; k < most && goal < line_load(PASS c.groups); k++) {
+        while (line_load(PASS g + 1u) <= goal)
+            g++;
+        list_place p = tail_place(PASS g, scale, goal - line_load(PASS g), line.rest);
+        f1 score = score_at(PASS g, p.place);
+        list_found f = descend(PASS patches, list_group_load(PASS g), p, score);
+        if (f.share > 0.0f) {
+            list_entry e;
+            e.light = f.light;
+            e.weight = tail_weight(line, score, scale, f.share);
+            entry_store(PASS count, e);
+            count++;
         }
+        goal = goal + line.step;
+    }
+    return count;
+}
+#endif
+
+/* Systematic draws over the nodes that stayed closed and the lights that were not listed. Returns the entries that
+ * there are then. start: 32 bits (core/random.h, tail_start), which do not depend on what the tile sees. */
+FN1 u1 draw_tail(CTX u1 patches, list_chosen c, u1 start) {
+    f1 total = groups_sum(PASS c.groups);
+    u1 count = c.entries;
+    if (total > 0.0f && c.draws > 0u) {
+        f1 scale = tail_scale(total);
+        count = find_tail(PASS patches, c, scale, tail_line_of(lay_line(PASS c.groups, scale), c.draws, start));
     }
     return count;
 }
 
-/* The list of a tile of so many blocks, seen from eye: `listed` lights and a tail of `drawn`. rotation (core/random.h,
- * tail_start) does not depend on what the tile sees. */
-FN1 list_size list_build(CTX u1 blocks, f3 eye, u1 listed, u1 drawn, f1 rotation) {
+/* The list of a tile of so many blocks, seen from eye: `listed` lights and a tail of `drawn`. */
+FN1 list_size list_build(CTX u1 blocks, f3 eye, u1 listed, u1 drawn, u1 start) {
     list_size size;
     size.count = 0u;
     size.copies = 1u;
     u1 patches = make_patches(PASS blocks, eye);
-    if (patches == 0u)
-        return size;
-    list_opened o = open_nodes(PASS patches);
-    u1 most = minu1(listed, U32(LIST_ENTRIES));
-    u1 tail = minu1(drawn, U32(LIST_ENTRIES));
-    /* A list without a tail where that holds all lights. */
-    if (scores_over(PASS 0u, o.first, 1.17549435e-38f) == 0u &&
-        scores_over(PASS o.first, o.count, 1.17549435e-38f) <= most + tail)
-        most = most + tail;
-    u1 chosen = choose_largest(PASS o.first, o.count, most);
-    for (u1 i = 0u; i < chosen; i++) {
-        u1 at = chosen_load(PASS i);
-        list_group g = list_group_load(PASS at / 16u);
-        list_entry e;
-        e.light = cluster_light(PASS g.part, g.block, at % 16u);
-        e.weight = 1.0f;
-        entry_store(PASS i, e);
-        score_clear(PASS at / 16u, at % 16u);
+    if (patches > 0u) {
+        list_chosen c = list_strongest(PASS patches, minu1(listed, U32(LIST_ENTRIES)), minu1(drawn, U32(LIST_ENTRIES)));
+        size.count = draw_tail(PASS patches, c, start);
     }
-    size.count = draw_tail(PASS patches, o.count, tail, rotation, chosen);
     return size;
 }
 

@@ -74,6 +74,8 @@ typedef struct list_cluster list_cluster;
 FN u1 tile_pixels(CTX u1 block); /* bits: pixels of the block that see a surface */
 FN list_point tile_point(CTX u1 block, u1 place);
 FN list_material list_material_load(CTX u1 material);
+FN void piece_store(CTX u1 i, u1 pixels); /* piece i: pixels of block i / 2 that make a patch */
+FN u1 piece_load(CTX u1 i);
 FN void patch_store(CTX u1 i, list_patch t);
 FN list_patch patch_load(CTX u1 i);
 FN list_node node_load(CTX u1 part, u1 level, u1 block, int l); /* nodes l to l + LANES - 1 of a block of 16 */
@@ -96,7 +98,7 @@ FN list_patch bound_gloss(list_material m, list_patch t) {
     return t;
 }
 
-/* Sphere, cone of normals and reflectance of some pixels of a block; not yet times its share. */
+/* Sphere, cone of normals and reflectance of some pixels of a block. share: pixels, so far; not yet a factor. */
 FN list_patch bound_patch(CTX u1 block, u1 pixels, f3 eye) {
     f3 lo = F3(1e38f, 1e38f, 1e38f);
     f3 hi = F3(-1e38f, -1e38f, -1e38f);
@@ -145,7 +147,7 @@ FN list_patch bound_patch(CTX u1 block, u1 pixels, f3 eye) {
         EXACT f1 spread = sqrt1(1.0f - cone * cone);
         t.spread = spread;
     }
-    t.share = 1.0f;
+    t.share = F32(bit_count(pixels));
     t.gloss = 0.0f;
     t.alpha2 = 1.0f;
     return bound_gloss(list_material_load(PASS tile_point(PASS block, low_bit(pixels)).material), t);
@@ -243,42 +245,54 @@ FN1 void patch_finish(CTX u1 i, list_patch t, f1 all) {
     patch_store(PASS i, t);
 }
 
-/* Makes the patches of a tile of so many blocks. Returns how many. */
-CALL u1 make_patches(CTX u1 blocks, f3 eye) {
+/* Joins the pieces that follow each other and are alike. Returns the number of patches. */
+FN1 u1 join_pieces(CTX u1 pieces, f3 eye) {
     u1 all = 0u;
     u1 count = 0u;
     list_patch held; /* the last one, which others may join; none: nothing is held yet */
     b1 none = true;
-    for (u1 b = 0u; b < blocks; b++)
-        all = all + bit_count(tile_pixels(PASS b));
-    for (u1 b = 0u; b < blocks; b++) {
-        u1 pixels = tile_pixels(PASS b);
-        u1 front = pixels_in_front(PASS b, pixels);
-        for (int i = 0; i < 2; i++) {
-            u1 pixels_of = front;
-            if (i == 1)
-                pixels_of = pixels & ~front;
-            if (pixels_of != 0u) {
-                list_patch t = bound_patch(PASS b, pixels_of, eye);
-                t.share = F32(bit_count(pixels_of));
-                if (!none && patches_alike(held, t)) {
-                    held = join_patches(held, t, eye);
-                } else {
-                    if (!none) {
-                        patch_finish(PASS count, held, F32(all));
-                        count++;
-                    }
-                    held = t;
-                    none = false;
+    for (u1 i = 0u; i < pieces; i++)
+        all = all + bit_count(piece_load(PASS i));
+    for (u1 i = 0u; i < pieces; i++)
+        if (piece_load(PASS i) != 0u) {
+            list_patch t = patch_load(PASS i);
+            if (!none && patches_alike(held, t)) {
+                held = join_patches(held, t, eye);
+            } else {
+                if (!none) {
+                    patch_finish(PASS count, held, F32(all));
+                    count++;
                 }
+                held = t;
+                none = false;
             }
         }
-    }
     if (!none) {
         patch_finish(PASS count, held, F32(all));
         count++;
     }
     return count;
+}
+
+/* Makes the patches of a tile of so many blocks, from two pieces a block. Returns how many. */
+CALL u1 make_patches(CTX u1 blocks, f3 eye) {
+    EACH_INDEX(b, blocks) {
+        u1 pixels = tile_pixels(PASS b);
+        u1 front = pixels_in_front(PASS b, pixels);
+        for (u1 i = 0u; i < 2u; i++) {
+            u1 piece = front;
+            if (i == 1u)
+                piece = pixels & ~front;
+            piece_store(PASS 2u * b + i, piece);
+            if (piece != 0u)
+                patch_store(PASS 2u * b + i, bound_patch(PASS b, piece, eye));
+        }
+    }
+    SETTLE;
+    u1 count = 0u;
+    if (FIRST_WORKER)
+        count = join_pieces(PASS 2u * blocks, eye);
+    return FROM_FIRST(count);
 }
 
 FN cone_bound patch_bound(list_patch t) {

@@ -65,11 +65,11 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 #define DIM_LIST_SHOWN 516u  /* which of them stands for the pixel in views, */
 #define DIM_LIST_KEPT 517u   /* and which becomes its reservoir */
 
-/* Where the tail of a tile's list starts, 0 to 1: anywhere, and from frame to frame on along the golden ratio's
+/* Start of the tail of a tile's list, as a share of 2^32: anywhere, and from frame to frame on along the golden ratio's
  * sequence, so that the mean of some frames has met the lights as evenly as one frame with so many draws. number: the
  * tile's in the picture, row by row. */
-FN real tail_start(u32 seed, u32 number, u32 frame) {
-    return unit_real(rng_bits(rng_key(seed, number, KU(0u)), KU(DIM_LIST)) + frame * KU(2654435769u));
+FN u32 tail_start(u32 seed, u32 number, u32 frame) {
+    return rng_bits(rng_key(seed, number, KU(0u)), KU(DIM_LIST)) + frame * KU(2654435769u);
 }
 
 #endif

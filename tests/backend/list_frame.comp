@@ -113,13 +113,13 @@ void score_clear(uint group, uint place) {
         put(scratch(16u * group + place), 0.0);
     settle();
 }
-void chosen_store(uint i, uint place) {
+void parent_store(uint i, float score) {
     settle();
     if (first())
-        put(scratch(uint(SCRATCH_CHOSEN) + i), place);
+        put(scratch(uint(SCRATCH_PARENTS) + i), score);
     settle();
 }
-uint chosen_load(uint i) { return wu(scratch(uint(SCRATCH_CHOSEN) + i)); }
+float parent_load(uint i) { return wf(scratch(uint(SCRATCH_PARENTS) + i)); }
 void list_group_store(uint group, list_group g) {
     uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
     settle();
@@ -134,13 +134,13 @@ list_group list_group_load(uint group) {
     uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
     return list_group(wu(at), wu(at + 1u), wu(at + 2u));
 }
-void group_sum_store(uint group, float sum) {
+void line_store(uint group, uint before) {
     settle();
     if (first())
-        put(scratch(uint(SCRATCH_SUMS) + group), sum);
+        put(scratch(uint(SCRATCH_LINE) + group), before);
     settle();
 }
-float group_sum(uint group) { return wf(scratch(uint(SCRATCH_SUMS) + group)); }
+uint line_load(uint group) { return wu(scratch(uint(SCRATCH_LINE) + group)); }
 void entry_store(uint i, list_entry e) {
     settle();
     if (first()) {
@@ -168,6 +168,13 @@ list_material list_material_load(uint material) {
     uint at = wu(HEAD_MATERIALS) + 8u * material;
     return list_material(wv(at), wf(at + 3u), wf(at + 7u));
 }
+void piece_store(uint i, uint pixels) {
+    settle();
+    if (first())
+        put(scratch(uint(SCRATCH_PIECES) + i), pixels);
+    settle();
+}
+uint piece_load(uint i) { return wu(scratch(uint(SCRATCH_PIECES) + i)); }
 void patch_store(uint i, list_patch t) {
     uint at = scratch(uint(SCRATCH_PATCHES) + 16u * i);
     settle();
@@ -399,7 +406,7 @@ void share_pixel(surf s, uint near, uint count, uint x, uint y) {
 }
 
 void build_tile() {
-    float start = tail_start(wu(HEAD_SEED), tile_, wu(HEAD_FRAME));
+    uint start = tail_start(wu(HEAD_SEED), tile_, wu(HEAD_FRAME));
     list_size size = list_build(16u, wv(uint(HEAD_EYE)), wu(HEAD_LIST), wu(HEAD_TAIL), start);
     size = list_fill(size, wu(HEAD_LIST) + wu(HEAD_TAIL), wu(HEAD_RAYS), wu(HEAD_DRAWS));
     list_sketches(size.count);

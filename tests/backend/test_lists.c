@@ -4,12 +4,14 @@
 #include "../render/rooms.h"
 
 #include "backend/cpu/kernels.h"
+#include "core/random.h"
 #include "light/bound.h"
 
 enum { BLOCKS = 16, ROUNDS = 3000 };
 
 static uint32_t state_ = 1;
 static uint32_t bits(void) { return state_ = state_ * 1664525u + 1013904223u, state_ >> 4 ^ state_ << 7; }
+static uint32_t start_at(double share) { return (uint32_t)(share * 4294967296.0); }
 static double real_in(double lo, double hi) { return lo + (hi - lo) * (double)(bits() >> 8 & 0xffff) / 65536; }
 
 /* Lights of every kind, strong and weak, facing every way, over a square of `side` metres; one in seven dark. */
@@ -108,47 +110,102 @@ static bool reaches(const world *w, const noc_light_record *r) {
     return false;
 }
 
+/* What lists of many starts hold of each light. A light of the tail has the same weight w in each list that holds it:
+ * 1 over the probability of being drawn. */
+typedef struct tally {
+    uint32_t *times;
+    float *weight; /* 0: no list holds it */
+} tally;
+
+static tally count_lists(const world *w, uint32_t (*start)(int round)) {
+    size_t lights = w->scene->lights.len;
+    tally t = { noc_calloc(lights, sizeof(*t.times)), noc_calloc(lights, sizeof(*t.weight)) };
+    list_scratch *s = noc_alloc_large(1, sizeof(*s));
+    assert_true(t.times && t.weight && s);
+    for (int i = 0; i < ROUNDS; i++) {
+        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w->ctx, w->blocks, w->lanes, BLOCKS, start(i), s);
+        assert_true(s->list.count <= (uint32_t)(w->params.list + w->params.tail));
+        for (uint32_t j = 0; j < s->list.count; j++) {
+            uint32_t light = s->list.light[j];
+            t.times[light]++;
+            assert_true(t.weight[light] == 0 || t.weight[light] == s->list.weight[j]);
+            t.weight[light] = s->list.weight[j];
+        }
+    }
+    free(s);
+    return t;
+}
+
+static void free_tally(tally *t) {
+    free(t->times);
+    free(t->weight);
+}
+
+static double mean_weight(const tally *t, int light) { return (double)t->weight[light] * t->times[light] / ROUNDS; }
+
+static uint32_t even_start(int round) { return start_at((round + 0.5) / ROUNDS); }
+static uint32_t tile_start(int round) { return tail_start(7, (uint32_t)round, 3); }
+
 /* The tail's draws are evenly spaced, so with the starts evenly spaced too, a light of weight w is met every 1/w-th
  * time to within one: its mean weight is 1 to within w / rounds a way into it. */
 static void weights_are_one(int lights, double side, int list, int tail) {
     static world w;
     make_world(&w, lights, side, list, tail);
-    const kernels *k = noc_pick_kernels(NOC_ISA_AUTO);
-    list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    double *mean = noc_calloc((size_t)lights, sizeof(*mean)), *largest = noc_calloc((size_t)lights, sizeof(*largest));
-    for (int i = 0; i < ROUNDS; i++) {
-        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((i + 0.5) / ROUNDS), s);
-        assert_true(s->list.count <= (uint32_t)(list + tail));
-        for (uint32_t j = 0; j < s->list.count; j++) {
-            mean[s->list.light[j]] += s->list.weight[j] / ROUNDS;
-            largest[s->list.light[j]] = fmax(largest[s->list.light[j]], s->list.weight[j]);
-        }
-    }
+    tally t = count_lists(&w, even_start);
     int tested = 0, wrong = 0, missed = 0, can = 0;
-    double sum = 0, all = 0;
+    double sum = 0, all = 0, drawn = 0;
     for (int i = 0; i < lights; i++) {
         const noc_light_record *r = &w.scene->lights.data[i];
+        drawn += t.weight[i] > 0 && t.weight[i] != 1 ? 1 / (double)t.weight[i] : 0;
         if (!reaches(&w, r))
             continue;
         double lux = noc_light_intensity(r) / (100 + r->p[0] * r->p[0] + r->p[1] * r->p[1]); /* about */
         can++;
         all += lux;
-        sum += lux * mean[i];
-        missed += largest[i] == 0;
-        if (largest[i] > 0.1 * ROUNDS || largest[i] == 0)
+        sum += lux * mean_weight(&t, i);
+        missed += t.times[i] == 0;
+        if ((double)t.weight[i] > 0.1 * ROUNDS || t.times[i] == 0)
             continue; /* met too seldom to say anything of it alone */
         tested++;
-        wrong += fabs(mean[i] - 1) > 2 * largest[i] / ROUNDS + 1e-3;
+        wrong += fabs(mean_weight(&t, i) - 1) > 2 * (double)t.weight[i] / ROUNDS + 1e-3;
     }
     print_message(
-        "# %d lights: %d can reach the tile, %d tested one by one, %d wrong, %d never met, mean weight by light %.4f\n",
-        lights, can, tested, wrong, missed, sum / all);
+        "# %d lights: %d can reach the tile, %d tested one by one, %d wrong, %d never met, mean weight by light "
+        "%.4f; probabilities of the tail add up to %.3f\n",
+        lights, can, tested, wrong, missed, sum / all, drawn);
     assert_true(tested > 20);
     assert_int_equal(wrong, 0);
     assert_true(fabs(sum / all - 1) < 0.01);
-    free(mean);
-    free(largest);
-    free(s);
+    /* Those that no list holds have less than 1 / ROUNDS each. */
+    assert_true(drawn < tail + 1e-3 && drawn > tail - 0.01 * tail - (double)missed / ROUNDS);
+    free_tally(&t);
+    free_world(&w);
+}
+
+/* Starts as frames have them: of n lists a light of probability p is in n p, to within five standard deviations, and
+ * all of them together stray as chance has it. */
+static void weights_are_one_by_chance(void **state) {
+    (void)state;
+    static world w;
+    make_world(&w, 6000, 60, 16, 64);
+    tally t = count_lists(&w, tile_start);
+    int tested = 0;
+    double worst = 0, squares = 0;
+    for (int i = 0; i < 6000; i++) {
+        double p = t.weight[i] > 1 ? 1 / (double)t.weight[i] : 0;
+        if (ROUNDS * p < 30)
+            continue;
+        double off = (t.times[i] - ROUNDS * p) / sqrt(ROUNDS * p * (1 - p));
+        worst = fmax(worst, fabs(off));
+        squares += off * off;
+        tested++;
+    }
+    print_message("# %d lights: %.2f standard deviations at most, %.3f in the mean square\n", tested, worst,
+                  squares / tested);
+    assert_true(tested > 200);
+    assert_true(worst < 5);
+    assert_true(fabs(squares / tested - 1) < 0.5);
+    free_tally(&t);
     free_world(&w);
 }
 
@@ -197,7 +254,7 @@ static void tail_is_quiet(void **state) {
             for (size_t i = 0; i < w.scene->lights.len; i++)
                 all[b][l] += lux_at(&w.scene->lights.data[i], &w.g[b], l);
     for (int k = 0; k < STARTS; k++) {
-        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s);
+        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, start_at((k + 0.5) / STARTS), s);
         for (int b = 0; b < BLOCKS; b++)
             for (int l = 0; l < BLOCK; l++) {
                 double sum = 0;
@@ -220,7 +277,7 @@ static void few_lights_are_listed(void **state) {
     static world w;
     make_world(&w, 40, 15, 32, 16);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s);
+    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, start_at(0.9), s);
     int can = 0, listed = 0;
     for (size_t i = 0; i < w.scene->lights.len; i++)
         can += reaches(&w, &w.scene->lights.data[i]);
@@ -263,7 +320,7 @@ static void narrow_beams_leave_room(void **state) {
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
     make_world_of(&w, scene, 16, 32);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.5f, s);
+    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, start_at(0.5), s);
     for (uint32_t j = 0; j < s->list.count; j++)
         if (s->list.light[j] == (uint32_t)beside && s->list.weight[j] == 1)
             times++;
@@ -282,11 +339,11 @@ static void tables_agree(void **state) {
     assert_true(tables >= 2);
     list_scratch *want = noc_alloc_large(1, sizeof(*want)), *have = noc_alloc_large(1, sizeof(*have));
     for (int round = 0; round < 50; round++) {
-        float rotation = (float)real_in(0, 1);
-        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, want);
+        uint32_t start = bits();
+        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, start, want);
         assert_int_equal(want->list.count > 24, 1);
         for (int k = 1; k < tables; k++) {
-            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, have);
+            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, start, have);
             assert_int_equal(have->list.count, want->list.count);
             assert_memory_equal(have->list.light, want->list.light, want->list.count * sizeof(*want->list.light));
             assert_memory_equal(have->list.weight, want->list.weight, want->list.count * sizeof(*want->list.weight));
@@ -323,6 +380,7 @@ int main(void) {
         cmocka_unit_test(small_scene),
         cmocka_unit_test(large_scene),
         cmocka_unit_test(deep_scene),
+        cmocka_unit_test(weights_are_one_by_chance),
         cmocka_unit_test(far_lights_stand_alone),
         cmocka_unit_test(tail_is_quiet),
         cmocka_unit_test(few_lights_are_listed),

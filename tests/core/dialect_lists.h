@@ -6,11 +6,12 @@
 #include "core/list_rays.h"
 
 #define FAKE_GROUPS 128u
-#define FAKE_SUMS (16u * (FAKE_GROUPS + 1u))
-#define FAKE_RECORDS (FAKE_SUMS + FAKE_GROUPS)
+#define FAKE_LINE (16u * (FAKE_GROUPS + 1u))
+#define FAKE_RECORDS (FAKE_LINE + FAKE_GROUPS + 1u)
 #define FAKE_PATCHES (FAKE_RECORDS + FAKE_GROUPS)
-#define FAKE_CHOSEN (FAKE_PATCHES + 16u * 6u)
-#define FAKE_ENTRIES (FAKE_CHOSEN + 128u)
+#define FAKE_PARENTS (FAKE_PATCHES + 16u * 6u)
+#define FAKE_PIECES (FAKE_PARENTS + 128u)
+#define FAKE_ENTRIES (FAKE_PIECES + 6u)
 #define FAKE_ROOM 64u
 #define FAKE_SKETCHES (FAKE_ENTRIES + 2u * FAKE_ROOM)
 #define FAKE_SEEN (FAKE_SKETCHES + 32u * U32(SKETCH_WORDS))
@@ -53,8 +54,8 @@ FN void score_clear(CTX u1 group, u1 place) { word_store(PASS group_word(group) 
 #ifndef CORE_GLSL
 FN const float *score_row(CTX u1 group) { return words_row(PASS group_word(group)); }
 #endif
-FN void chosen_store(CTX u1 i, u1 place) { word_store(PASS FAKE_CHOSEN + i, place); }
-FN u1 chosen_load(CTX u1 i) { return word_load(PASS FAKE_CHOSEN + i); }
+FN void parent_store(CTX u1 i, f1 score) { word_store(PASS FAKE_PARENTS + i, bits_of_f1(score)); }
+FN f1 parent_load(CTX u1 i) { return f1_of_bits(word_load(PASS FAKE_PARENTS + i)); }
 FN void list_group_store(CTX u1 group, list_group g) {
     word_store(PASS FAKE_RECORDS + group, g.part | shl(g.level, 4) | shl(g.block, 8));
 }
@@ -66,8 +67,8 @@ FN list_group list_group_load(CTX u1 group) {
     g.block = shr(x, 8);
     return g;
 }
-FN void group_sum_store(CTX u1 group, f1 sum) { word_store(PASS FAKE_SUMS + group, bits_of_f1(sum)); }
-FN f1 group_sum(CTX u1 group) { return f1_of_bits(word_load(PASS FAKE_SUMS + group)); }
+FN void line_store(CTX u1 group, u1 before) { word_store(PASS FAKE_LINE + group, before); }
+FN u1 line_load(CTX u1 group) { return word_load(PASS FAKE_LINE + group); }
 FN void entry_store(CTX u1 i, list_entry e) {
     word_store(PASS FAKE_ENTRIES + 2u * i, e.light);
     word_store(PASS FAKE_ENTRIES + 2u * i + 1u, bits_of_f1(e.weight));
@@ -88,6 +89,8 @@ FN f3 word3_load(CTX u1 at, u1 stride) {
     return F3(f1_of_bits(word_load(PASS at)), f1_of_bits(word_load(PASS at + stride)),
               f1_of_bits(word_load(PASS at + 2u * stride)));
 }
+FN void piece_store(CTX u1 i, u1 pixels) { word_store(PASS FAKE_PIECES + i, pixels); }
+FN u1 piece_load(CTX u1 i) { return word_load(PASS FAKE_PIECES + i); }
 FN void patch_store(CTX u1 i, list_patch t) {
     u1 at = FAKE_PATCHES + 16u * i;
     word3_store(PASS at, t.c);
@@ -414,7 +417,25 @@ FN1 u1 tile_patches(CTX u1 item, f3 eye) {
     return patches;
 }
 
-/* Slots 52 to 62: scores of all magnitudes in groups 0 to 6, many of them alike, and group 7 without any. */
+/* Slots 60 to 62, and 110 to 112: a line of the first groups, and one draw. */
+FN1 void tile_line(CTX u1 item, u1 draws) {
+    f1 total = groups_sum(PASS 7u);
+    f1 scale = tail_scale(total);
+    u1 all = lay_line(PASS 7u, scale);
+    tail_line line = tail_line_of(all, draws + 1u, tile_bits(item, 336u));
+    u1 group = tile_bits(item, 337u) % 7u;
+    list_place p =
+        tail_place(PASS group, scale,
+                   high_u1(line_load(PASS group + 1u) - line_load(PASS group), tile_bits(item, 338u)), line.rest);
+    put_f1(PASS item, LISTS_FIRST + 60, total);
+    put_u1(PASS item, LISTS_FIRST + 61, all * 31u + line_load(PASS group));
+    put_u1(PASS item, LISTS_FIRST + 62, line.step * 31u + line.first);
+    put_u1(PASS item, LISTS_FIRST + 110, p.place);
+    put_f1(PASS item, LISTS_FIRST + 111, p.at);
+    put_f1(PASS item, LISTS_FIRST + 112, tail_weight(line, score_at(PASS group, p.place & 15u) + 0.5f, scale, 0.75f));
+}
+
+/* Slots 52 to 59: scores of all magnitudes in groups 0 to 6, many of them alike, and group 7 without any. */
 FN1 void tile_groups(CTX u1 item) {
     for (u1 i = 0u; i < 128u; i++) {
         u1 bits = tile_bits(item, 200u + i);
@@ -432,24 +453,13 @@ FN1 void tile_groups(CTX u1 item) {
     put_u1(PASS item, LISTS_FIRST + 53, scores_over(PASS 1u, 7u, t));
     put_u1(PASS item, LISTS_FIRST + 54, places_over(PASS group, t));
     put_f1(PASS item, LISTS_FIRST + 55, score_step(300u + (tile_bits(item, 332u) & 255u)));
-    u1 n = choose_largest(PASS 0u, 8u, tile_bits(item, 333u) & 127u);
-    u1 all = 0u;
-    for (u1 i = 0u; i < n; i++)
-        all = all * 31u + chosen_load(PASS i);
-    put_u1(PASS item, LISTS_FIRST + 56, n);
-    put_u1(PASS item, LISTS_FIRST + 57, all);
+    score_cut c = cut_scores(PASS 0u, 8u, tile_bits(item, 333u) & 127u);
+    put_u1(PASS item, LISTS_FIRST + 56, c.sure);
+    put_u1(PASS item, LISTS_FIRST + 57, c.room);
     list_place p = place_at(PASS group, sum, tile_real(item, 334u) * 1.25f);
     put_u1(PASS item, LISTS_FIRST + 58, p.place);
     put_f1(PASS item, LISTS_FIRST + 59, p.at);
-    long_sum a;
-    EXACT f1 high = 1000.0f * tile_real(item, 335u);
-    EXACT f1 low = 1e-5f * tile_real(item, 336u);
-    a.high = high;
-    a.low = low;
-    long_sum b = long_add(a, tile_real(item, 337u));
-    put_f1(PASS item, LISTS_FIRST + 60, b.high);
-    put_f1(PASS item, LISTS_FIRST + 61, b.low);
-    put_f1(PASS item, LISTS_FIRST + 62, long_difference(b, a));
+    tile_line(PASS item, tile_bits(item, 335u) & 31u);
 }
 
 /* Slots 63 to 68. */
@@ -498,7 +508,7 @@ FN1 void tile_list(CTX u1 item, f3 eye) {
     if ((item & 7u) == (shr(item, 3) & 7u)) {
         u1 listed = tile_bits(item, 360u) & 31u;
         u1 drawn = tile_bits(item, 361u) & 15u;
-        size = list_build(PASS(item >> 6u) & 3u, eye, listed, drawn, tile_real(item, 362u));
+        size = list_build(PASS(item >> 6u) & 3u, eye, listed, drawn, tile_bits(item, 362u));
         size = list_fill(PASS size, FAKE_ROOM, 2u, 24u);
         for (u1 i = 0u; i < size.count; i++) {
             list_entry e = entry_load(PASS i);

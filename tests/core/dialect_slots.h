@@ -10,7 +10,7 @@
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
 #define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)
-#define LISTS_SLOTS 110 /* dialect_lists.h */
+#define LISTS_SLOTS 113 /* dialect_lists.h */
 #define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
@@ -18,6 +18,6 @@
 #define PRIMARY_FIRST (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
 #define PRIMARY_SLOTS 22 /* dialect_primary.h */
 #define ITEM_SLOTS (PRIMARY_FIRST + PRIMARY_SLOTS)
-#define TILE_WORDS 3776 /* of memory for a tile */
+#define TILE_WORDS 3840 /* of memory for a tile */
 
 #endif

@@ -10,8 +10,6 @@ FN real score_load(CTX u1 group, int l) { return 0; }
 FN void score_store(CTX u1 group, int l, real score) {}
 FN f1 score_at(CTX u1 group, u1 place) { return 0; }
 FN void score_clear(CTX u1 group, u1 place) {}
-FN void chosen_store(CTX u1 i, u1 place) {}
-FN u1 chosen_load(CTX u1 i) { return 0; }
 FN const float *score_row(CTX u1 group) { return NULL; }
 FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) { return (list_node){ 0 }; }
 FN list_brief brief_load(CTX u1 part, u1 cluster, int l) { return (list_brief){ 0 }; }

@@ -166,10 +166,11 @@ static const struct {
     { LISTS_FIRST + 53, "scores_over" },
     { LISTS_FIRST + 54, "places_over" },
     { LISTS_FIRST + 55, "score_step" },
-    { LISTS_FIRST + 56, "choose_largest" },
+    { LISTS_FIRST + 56, "cut_scores" },
     { LISTS_FIRST + 58, "place_at" },
-    { LISTS_FIRST + 60, "long_add" },
-    { LISTS_FIRST + 62, "long_difference" },
+    { LISTS_FIRST + 60, "groups_sum" },
+    { LISTS_FIRST + 61, "lay_line" },
+    { LISTS_FIRST + 62, "tail_line_of" },
     { LISTS_FIRST + 63, "score_nodes" },
     { LISTS_FIRST + 65, "score_lights" },
     { LISTS_FIRST + 67, "descend" },
@@ -187,6 +188,8 @@ static const struct {
     { LISTS_FIRST + 104, "weigh_face" },
     { LISTS_FIRST + 107, "near_entries" },
     { LISTS_FIRST + 109, "weigh_faces" },
+    { LISTS_FIRST + 110, "tail_place" },
+    { LISTS_FIRST + 112, "tail_weight" },
     { TEXTURES_FIRST, "texture_level" },
     { TEXTURES_FIRST + 1, "texture_albedo" },
     { TEXTURES_FIRST + 4, "texture_albedo, first level" },
@@ -220,8 +223,8 @@ static const struct {
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
                                       37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90, 96, 110 };
-static const int list_integers[] = { 2,  11, 12, 13, 14, 15, 20, 21, 35,  36,  53,  54,
-                                     56, 57, 58, 67, 73, 74, 75, 89, 101, 107, 108, 109 };
+static const int list_integers[] = { 2,  11, 12, 13, 14, 15, 20, 21, 35,  36,  53,  54,  56, 57,
+                                     58, 61, 62, 67, 73, 74, 75, 89, 101, 107, 108, 109, 110 };
 
 static bool holds_integers(int slot) {
     for (size_t i = 0; i < sizeof(frame_integers) / sizeof(frame_integers[0]); i++)

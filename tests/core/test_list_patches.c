@@ -8,6 +8,7 @@ enum { BLOCKS = 16, PIXELS = 16 };
 
 struct core_context {
     list_point at[BLOCKS][PIXELS];
+    u1 piece[2 * BLOCKS];
     list_patch patch[2 * BLOCKS];
 };
 
@@ -17,6 +18,8 @@ FN list_point tile_point(CTX u1 block, u1 place) { return ctx->at[block][place];
 FN list_material list_material_load(CTX u1 material) {
     return (list_material){ F3(.5f, .5f, .5f), material ? .05f : 0, .25f };
 }
+FN void piece_store(CTX u1 i, u1 pixels) { MINE->piece[i] = pixels; }
+FN u1 piece_load(CTX u1 i) { return ctx->piece[i]; }
 FN void patch_store(CTX u1 i, list_patch t) { MINE->patch[i] = t; }
 FN list_patch patch_load(CTX u1 i) { return ctx->patch[i]; }
 

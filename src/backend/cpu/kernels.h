@@ -155,10 +155,11 @@ typedef struct list_scratch {
     light_list list;
     ALIGNED float scores[LIST_GROUPS + 1][16];
     ALIGNED uint32_t sketches[SKETCH_WORDS][LIST_ROOM]; /* fields of list_sketch by row and place: core/list_faces.h */
-    float sums[LIST_GROUPS];
+    float parents[LIST_CHOSEN];
+    uint32_t line[LIST_GROUPS + 1]; /* core/list_tail.h */
     group_record groups[LIST_GROUPS];
+    uint32_t pieces[LIST_PATCHES];
     patch_record patches[LIST_PATCHES];
-    uint32_t chosen[LIST_CHOSEN];
 } list_scratch;
 
 /* What is expected of a list's entries by row and place, and so how they are weighed; 0 where there is none. */
@@ -243,7 +244,7 @@ typedef struct kernels {
                        int m, const presample_row *samples, float (*scratch)[BLOCK], rblock *out);
     /* The list of a tile of `blocks` blocks into scratch->list: core/list_build.h. Then candidates from ctx->lists. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
-                       float rotation, list_scratch *scratch);
+                       uint32_t start, list_scratch *scratch);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Several rays a pixel over the list (core/list_rays.h): its lights several times where there is room; how many
      * rays, to which entries; ray k of each lane, into all of out but m; which ray stands for a lane in views of the

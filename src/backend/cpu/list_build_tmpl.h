@@ -11,8 +11,6 @@ FN void score_store(CTX u1 group, int l, real score) { rstore(ctx->at.lists->sco
 FN f1 score_at(CTX u1 group, u1 place) { return ctx->at.lists->scores[group][place]; }
 FN void score_clear(CTX u1 group, u1 place) { ctx->at.lists->scores[group][place] = 0; }
 FN const float *score_row(CTX u1 group) { return ctx->at.lists->scores[group]; }
-FN void chosen_store(CTX u1 i, u1 place) { ctx->at.lists->chosen[i] = place; }
-FN u1 chosen_load(CTX u1 i) { return ctx->at.lists->chosen[i]; }
 FN void list_group_store(CTX u1 group, list_group g) {
     ctx->at.lists->groups[group] = (group_record){ g.block, (uint8_t)g.part, (uint8_t)g.level };
 }
@@ -20,8 +18,10 @@ FN list_group list_group_load(CTX u1 group) {
     const group_record *g = &ctx->at.lists->groups[group];
     return (list_group){ g->part, g->level, g->block };
 }
-FN void group_sum_store(CTX u1 group, f1 sum) { ctx->at.lists->sums[group] = sum; }
-FN f1 group_sum(CTX u1 group) { return ctx->at.lists->sums[group]; }
+FN void parent_store(CTX u1 i, f1 score) { ctx->at.lists->parents[i] = score; }
+FN f1 parent_load(CTX u1 i) { return ctx->at.lists->parents[i]; }
+FN void line_store(CTX u1 group, u1 before) { ctx->at.lists->line[group] = before; }
+FN u1 line_load(CTX u1 group) { return ctx->at.lists->line[group]; }
 FN void entry_store(CTX u1 i, list_entry e) {
     ctx->at.lists->list.light[i] = e.light;
     ctx->at.lists->list.weight[i] = e.weight;
@@ -46,7 +46,19 @@ FN list_material list_material_load(CTX u1 material) {
 _Static_assert(sizeof(patch_record) == sizeof(list_patch) && offsetof(patch_record, wo) == offsetof(list_patch, wo) &&
                    offsetof(patch_record, alpha2) == offsetof(list_patch, alpha2),
                "a record is a patch");
-FN void patch_store(CTX u1 i, list_patch t) { memcpy(&ctx->at.lists->patches[i], &t, sizeof(t)); }
+FN void piece_store(CTX u1 i, u1 pixels) { ctx->at.lists->pieces[i] = pixels; }
+FN u1 piece_load(CTX u1 i) { return ctx->at.lists->pieces[i]; }
+FN void patch_store(CTX u1 i, list_patch t) {
+    ctx->at.lists->patches[i] = (patch_record){ { t.c.x, t.c.y, t.c.z },
+                                                t.radius,
+                                                { t.axis.x, t.axis.y, t.axis.z },
+                                                t.spread,
+                                                t.share,
+                                                t.reflectance,
+                                                { t.wo.x, t.wo.y, t.wo.z },
+                                                t.gloss,
+                                                t.alpha2 };
+}
 FN list_patch patch_load(CTX u1 i) {
     list_patch t;
     memcpy(&t, &ctx->at.lists->patches[i], sizeof(t));
@@ -82,13 +94,13 @@ FN list_brief brief_load(CTX u1 part, u1 cluster, int l) {
 FN u1 cluster_light(CTX u1 part, u1 cluster, u1 at) { return ctx->clusters[part]->lights[cluster].id[at]; }
 
 static void build_list(const struct core_context *frame, const gblock *const *g, const uint32_t *lanes, int blocks,
-                       float rotation, list_scratch *scratch) {
+                       uint32_t start, list_scratch *scratch) {
     const frame_constants *f = frame->frame;
     struct core_context tile = *frame, *ctx = &tile;
     ctx->at.tile = g;
     ctx->at.tile_pixels = lanes;
     ctx->at.lists = scratch;
-    list_size size = list_build(ctx, (u1)blocks, three(f->camera.eye), f->list, f->tail, rotation);
+    list_size size = list_build(ctx, (u1)blocks, three(f->camera.eye), f->list, f->tail, start);
     scratch->list.count = size.count;
     scratch->list.copies = size.copies;
 }
