@@ -85,7 +85,7 @@ static uint64_t presampled(const kernels *k, const candidates_job *job, float f0
         rblock r;
         for (int j = 0; j < 6; j++)
             memcpy(to[j], job->surfaces[j] + first, BLOCK * sizeof(float));
-        uint32_t pixels[BLOCK], subset = k->subset_of(&ctx, first / BLOCK, subsets);
+        uint32_t pixels[BLOCK], subset = presample_subset(ctx.frame->seed, first / BLOCK, ctx.frame->index, subsets);
         for (uint32_t l = 0; l < BLOCK; l++)
             pixels[l] = first + l;
         k->presampled(&ctx, &g, 0xffff, pixels, job->m, samples + (size_t)subset * (size_t)job->m, weighed, &r);

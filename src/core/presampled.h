@@ -15,6 +15,7 @@
 #ifndef CORE_PRESAMPLED_H
 #define CORE_PRESAMPLED_H
 
+#include "core/alias.h"
 #include "core/given.h"
 #include "core/list_sketch.h"
 #include "core/presample_limits.h"
@@ -60,11 +61,6 @@ FN real weighed_at(CTX u32 i);
 
 /* ---- a frame's samples ---- */
 
-/* Of a subset, or of a block with `of_block`: no pixel's. */
-FN1 u1 presample_key(u1 seed, u1 number, u1 frame, u1 of_block) {
-    return hash_u1(2u * number + of_block + hash_u1(frame + hash_u1((seed ^ 0x2c1b3c6du) + 0x68bc21ebu)));
-}
-
 /* Bits that choose sample i of n: anywhere in an even share of their own of all numbers, which begin anywhere. */
 FN1 u1 presample_share(u1 n) { return 0xffffffffu / n; }
 FN u32 presample_bits(u1 key, u32 i, u1 share) {
@@ -73,9 +69,38 @@ FN u32 presample_bits(u1 key, u32 i, u1 share) {
 FN real presample_choice(u1 key, u32 i) { return rng(KU(key), KU(3u) * i + KU(2u)); } /* for who needs one more */
 FN u32 presample_place(u1 key, u32 i) { return rng_bits(KU(key), KU(3u) * i + KU(3u)); }
 
-/* Where in its subset sample i goes, of 16 that are candidates of the same number: one turn for all of the subset. */
+/* Sample i of n, of `count` lights alike. */
+FN presample_pick presample_draw(u1 key, u32 i, u1 n, u1 count) {
+    presample_pick k;
+    k.light = scale_u32(presample_bits(key, i, presample_share(n)), KU(count));
+    k.place = presample_place(key, i);
+    k.inverse = K(F32(count));
+    return k;
+}
+
+/* Sample i of n, by power. slots: of the alias table; 0: no light shines. */
+FN presample_pick presample_draw_power(CTX u1 key, u32 i, u1 n, u1 slots) {
+    presample_pick k;
+    k.light = KU(0u);
+    k.place = presample_place(key, i);
+    k.inverse = K(0.0f);
+    if (slots > 0u) {
+        pick p = alias_draw(PASS KU(slots), presample_bits(key, i, presample_share(n)), presample_choice(key, i));
+        k.light = p.light;
+        k.inverse = p.inverse;
+    }
+    return k;
+}
+
+/* Rank of sample i: those whose target is always evaluated go last, so that they are candidates of the same numbers.
+ * plain: presample_plain of its light; before: plain samples among the i before it; all: plain samples of the subset.
+ */
+FN u32 presample_rank(mask plain, u32 i, u32 before, u1 all) { return selu(plain, before, KU(all) + (i - before)); }
+
+/* Where in its subset the sample of rank i goes, of 16 that are candidates of the same number: one turn for all of the
+ * subset. */
 FN1 u1 presample_turn(u1 key) { return shr(hash_u1(key ^ 0x5bd1e995u), 28); }
-FN1 u1 presample_turned(u1 key, u1 i) { return (i & 0xfffffff0u) | ((i + presample_turn(key)) & 15u); }
+FN u32 presample_turned(u1 key, u32 i) { return (i & KU(0xfffffff0u)) | ((i + KU(presample_turn(key))) & KU(15u)); }
 /* Which sample is at that lane of that row of 16. */
 FN u32 presample_at(u1 key, u1 row, u32 lane) { return KU(row * 16u) + ((lane - KU(presample_turn(key))) & KU(15u)); }
 

@@ -3,6 +3,7 @@
 #include "../render/rooms.h"
 
 #include "backend/cpu/kernels.h"
+#include "core/presample_limits.h"
 
 enum { PROFILE_CELLS = 22, LIGHTS = 77, MATERIALS = 9, ROUNDS = 40 };
 
@@ -188,7 +189,8 @@ static void run_all(const kernels *k, world *w, combining *b, trace *t) {
     uint32_t pixels[BLOCK];
     for (uint32_t l = 0; l < BLOCK; l++)
         pixels[l] = 7 + 3 * l;
-    k->presampled(&w->ctx, g, 0xbeef, pixels, 13, samples + (size_t)13 * k->subset_of(&w->ctx, 9, 2), weighed,
+    k->presampled(&w->ctx, g, 0xbeef, pixels, 13,
+                  samples + (size_t)13 * presample_subset(w->frame.seed, 9, w->frame.index, 2), weighed,
                   &t->candidates);
     fetch_all(k, w, t);
     t->front = k->history_places(&w->ctx, g, t->x, t->y);

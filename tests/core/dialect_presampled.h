@@ -35,7 +35,7 @@ FN real weighed_at(CTX u32 i) {
     return x;
 }
 
-/* Slots 0 to 27. */
+/* Slots 0 to 31. */
 FN void presampling(CTX u32 item, u32 key, surf s) {
     dialect_shared = hash_u32(key + KU(6001u));
     presample e = presample_of(any_light(dialect_shared), rng(key, KU(6002u)), rng(key, KU(6003u)));
@@ -55,10 +55,17 @@ FN void presampling(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, PRESAMPLED_FIRST + 16, presample_bits(subset, i, presample_share(80u)));
     put_real(PASS item, PRESAMPLED_FIRST + 17, presample_choice(subset, i));
     put_u32(PASS item, PRESAMPLED_FIRST + 18, presample_place(subset, i));
-    put_u32(PASS item, PRESAMPLED_FIRST + 19, KU(presample_turned(subset, ITEM_COUNT & 31u)) + item);
+    put_u32(PASS item, PRESAMPLED_FIRST + 19, presample_turned(subset, i));
     put_real(PASS item, PRESAMPLED_FIRST + 20, sel(presample_plain(any_light(key)), K(1.0f), K(0.0f)));
     put_resv(PASS item, PRESAMPLED_FIRST + 21, ris_presampled(PASS s, rng(key, KU(6004u)), CANDIDATES));
     put_real(PASS item, PRESAMPLED_FIRST + 27, weighed_load(PASS CANDIDATES - 1));
+    presample_pick even = presample_draw(subset, i, 208u, KERNEL_LIGHTS);
+    presample_pick power = presample_draw_power(PASS subset, i, 208u, KERNEL_LIGHTS);
+    put_u32(PASS item, PRESAMPLED_FIRST + 28, even.light + even.place);
+    put_u32(PASS item, PRESAMPLED_FIRST + 29, power.light + power.place);
+    put_real(PASS item, PRESAMPLED_FIRST + 30, power.inverse);
+    u32 rank = presample_rank(presample_plain(light_load(PASS power.light)), i, shr(i, 1), 80u);
+    put_u32(PASS item, PRESAMPLED_FIRST + 31, rank + KU(presample_subset(3u, ITEM_COUNT & 7u, 5u, 900u)));
 }
 
 #endif

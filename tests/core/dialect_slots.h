@@ -14,7 +14,7 @@
 #define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
-#define PRESAMPLED_SLOTS 28 /* dialect_presampled.h */
+#define PRESAMPLED_SLOTS 32 /* dialect_presampled.h */
 #define PRIMARY_FIRST (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
 #define PRIMARY_SLOTS 22 /* dialect_primary.h */
 #define ITEM_SLOTS (PRIMARY_FIRST + PRIMARY_SLOTS)

@@ -208,6 +208,9 @@ static const struct {
     { PRESAMPLED_FIRST + 19, "presample_turned" },
     { PRESAMPLED_FIRST + 20, "presample_plain" },
     { PRESAMPLED_FIRST + 21, "ris_presampled" },
+    { PRESAMPLED_FIRST + 28, "presample_draw" },
+    { PRESAMPLED_FIRST + 29, "presample_draw_power" },
+    { PRESAMPLED_FIRST + 31, "presample_rank, presample_subset" },
     { PRIMARY_FIRST, "receiver_of_hit, place" },
     { PRIMARY_FIRST + 3, "receiver_of_hit, normal" },
     { PRIMARY_FIRST + 6, "receiver_of_hit, depth" },
@@ -238,6 +241,7 @@ static bool holds_integers(int slot) {
            slot == 177 || slot == TEXTURES_FIRST + 7 || slot == TEXTURES_FIRST + 16 || slot == INFLUENCE_FIRST ||
            slot == PRESAMPLED_FIRST + 15 || slot == PRESAMPLED_FIRST + 16 || slot == PRESAMPLED_FIRST + 18 ||
            slot == PRESAMPLED_FIRST + 19 || slot == PRESAMPLED_FIRST + 21 || slot == INFLUENCE_FIRST + 2 ||
+           slot == PRESAMPLED_FIRST + 28 || slot == PRESAMPLED_FIRST + 29 || slot == PRESAMPLED_FIRST + 31 ||
            slot == PRIMARY_FIRST + 7 || slot == PRIMARY_FIRST + 13 || slot == PRIMARY_FIRST + 21 ||
            (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
 }

@@ -17,6 +17,11 @@ struct core_context {
 };
 
 #define MINE ((struct core_context *)(uintptr_t)ctx)
+/* Light 0 is drawn three times in four, light 1 once, light 2 never. */
+FN alias_slot alias_load(CTX u32 i) {
+    (void)ctx;
+    return (alias_slot){ i == 0 ? 1 : i == 1 ? 0.75f : 0, 0, i == 0 ? 4 / 3.f : i == 1 ? 4 : 0, 4 / 3.f };
+}
 FN light light_load(CTX u32 i) { return ctx->light[i]; }
 FN presample_pick presample_pick_load(CTX u32 i) { return (presample_pick){ i, ctx->place[i], ctx->inverse[i] }; }
 FN presample presample_load(CTX int i) {
@@ -194,6 +199,46 @@ static void samples_are_alike(void **state) {
     }
 }
 
+/* Samples are drawn as often as their inverses say, none of a table that is empty. */
+static void draws_follow_their_probabilities(void **state) {
+    const struct core_context *ctx = NULL;
+    (void)state;
+    enum { SUBSETS = 500, N = 80, LIGHTS = 3 };
+    double even[LIGHTS] = { 0 }, power[LIGHTS] = { 0 };
+    for (u1 subset = 0; subset < SUBSETS; subset++)
+        for (u32 i = 0; i < N; i++) {
+            u1 key = presample_key(5, subset, 2, 0);
+            presample_pick a = presample_draw(key, i, N, LIGHTS), b = presample_draw_power(ctx, key, i, N, LIGHTS);
+            even[a.light] += (double)a.inverse / LIGHTS;
+            power[b.light] += (double)b.inverse * (b.light ? 0.25 : 0.75);
+            assert_true(a.place == b.place && a.inverse == LIGHTS);
+            assert_true(presample_draw_power(ctx, key, i, N, 0).inverse == 0);
+        }
+    /* stratified, so better than a binomial's */
+    for (int l = 0; l < LIGHTS; l++)
+        assert_true(fabs(even[l] / (SUBSETS * N) - 1 / 3.) < 0.01);
+    assert_true(fabs(power[0] / (SUBSETS * N) - 0.75) < 0.01 && fabs(power[1] / (SUBSETS * N) - 0.25) < 0.01);
+    assert_true(power[2] == 0);
+}
+
+/* Each rank is one sample's; plain ones come first, in their order. */
+static void plain_samples_come_first(void **state) {
+    (void)state;
+    dice d = { 8 };
+    for (int trial = 0; trial < 200; trial++) {
+        enum { N = 96 };
+        bool plain[N];
+        u1 all = 0, before = 0, plain_rank = 0, late_rank = 0;
+        for (int i = 0; i < N; i++)
+            all += plain[i] = trial > 1 ? uniform(&d, 0, 1) < 0.7 : trial;
+        for (u32 i = 0; i < N; i++) {
+            u32 rank = presample_rank(plain[i], i, before, all);
+            assert_int_equal(rank, plain[i] ? plain_rank++ : all + late_rank++);
+            before += plain[i];
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places),
@@ -201,6 +246,8 @@ int main(void) {
         cmocka_unit_test(beams_are_always_asked),
         cmocka_unit_test(chosen_by_what_divides),
         cmocka_unit_test(samples_are_alike),
+        cmocka_unit_test(draws_follow_their_probabilities),
+        cmocka_unit_test(plain_samples_come_first),
     };
     return cmocka_run_group_tests_name("core/presampled", tests, NULL, NULL);
 }

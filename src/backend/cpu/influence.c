@@ -2,6 +2,7 @@
  * of samples that they share (core/influence_draw.h), and what is left of the groups has a set for each 16 pixels. */
 #include "backend/cpu/cpu.h"
 #include "core/influence_limits.h"
+#include "core/presample_limits.h"
 
 enum { TILE_PIXELS = TILE_BLOCKS * TILE_BLOCKS * BLOCK, MOST_SIXTEENS = 2 * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_SIXTEENS <= (int)INFLUENCE_SETS, "sets of a tile have numbers of their own");
@@ -89,17 +90,18 @@ typedef struct drawing {
 } drawing;
 
 static void make_set(drawing *d, const sixteen *s) {
-    const noc_found *f = &d->w->picks->found;
+    const noc_found *found = &d->w->picks->found;
     uint16_t of[BLOCK] = { 0 };
     for (int l = 0; l < BLOCK; l++)
         if (s->group != MIXED)
             of[l] = s->group;
         else if (l < s->count)
-            of[l] = f->of[s->pixel[l] / BLOCK][s->pixel[l] % BLOCK];
+            of[l] = found->of[s->pixel[l] / BLOCK][s->pixel[l] % BLOCK];
     const stage_run *run = d->run;
-    size_t first = (size_t)noc_cpu_shared_draws(run) * run->k->subset_of(&run->ctx, d->number, run->s->subsets);
-    run->k->influence_draw(&run->ctx, f, of, d->number++, d->m, run->s->samples + first, run->s->sample_volumes + first,
-                           d->w->picks->set);
+    const frame_constants *f = run->ctx.frame;
+    size_t first = (size_t)noc_cpu_shared_draws(run) * presample_subset(f->seed, d->number, f->index, run->s->subsets);
+    run->k->influence_draw(&run->ctx, found, of, d->number++, d->m, run->s->samples + first,
+                           run->s->sample_volumes + first, d->w->picks->set);
 }
 
 /* How often the light that a lane chose is expected among its candidates. */

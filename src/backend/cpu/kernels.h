@@ -236,8 +236,6 @@ typedef struct kernels {
     /* A subset of the candidates that blocks share: m rows, of all lights alike or by power. scratch: 16 m. */
     void (*presample)(const struct core_context *ctx, uint32_t subset, int m, bool by_power, presample_pick1 *scratch,
                       presample_row *out);
-    /* Which of so many subsets a block of that number, or a set, has. */
-    uint32_t (*subset_of)(const struct core_context *ctx, uint32_t number, uint32_t subsets);
     /* A reservoir of m samples, a row each, for the lanes of `lanes`; w = m = 0 elsewhere. pixels: y * width + x.
      * scratch: m. */
     void (*presampled)(const struct core_context *ctx, const gblock *g, uint32_t lanes, const uint32_t pixels[BLOCK],

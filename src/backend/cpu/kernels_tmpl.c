@@ -179,7 +179,6 @@ const kernels KERNELS = {
     .name = KERNELS_NAME,
     .hits = hits,
     .presample = presample_lights,
-    .subset_of = subset_of,
     .presampled = presampled,
     .list_build = build_list,
     .list_candidates = list_candidates,

@@ -172,7 +172,8 @@ static void candidates_shared(stage_run *run, worker *w, tile t) {
     tile_points p;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
-        uint32_t subset = run->k->subset_of(&run->ctx, (uint32_t)p.block[i].at, run->s->subsets);
+        uint32_t subset =
+            presample_subset(run->ctx.frame->seed, (uint32_t)p.block[i].at, run->ctx.frame->index, run->s->subsets);
         uint32_t pixel[BLOCK];
         noc_cpu_pixels(run, &p.block[i], pixel);
         run->k->presampled(&run->ctx, p.g[i], p.lanes[i], pixel, m, run->s->samples + (size_t)m * subset,

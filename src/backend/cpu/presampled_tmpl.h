@@ -28,20 +28,49 @@ FN real weighed_at(CTX u32 i) {
     return real_gather(ctx->at.weighed[0] + ctx->at.lane, i * KU(BLOCK) + lane_numbers(0));
 }
 
-/* Samples whose target is always asked go last, so that they are candidates of the same numbers. */
-static void part_samples(const struct core_context *ctx, u1 key, const presample_pick1 *drawn, uint32_t n,
+/* Bit i: the target of sample i is not always evaluated. */
+enum { PLAIN_WORDS = MOST_DRAWS * BLOCK / 32 };
+
+/* Draws the samples of a subset in their order; returns how many of them are plain. */
+static uint32_t draw_samples(const struct core_context *ctx, u1 key, uint32_t n, bool by_power, presample_pick1 *drawn,
+                             uint32_t plain[PLAIN_WORDS]) {
+    uint32_t all = 0;
+    memset(plain, 0, (n + 31) / 32 * sizeof(*plain));
+    for (uint32_t first = 0; first < n; first += LANES) {
+        u32 i = KU(first) + lane_numbers(0);
+        presample_pick p = by_power ? presample_draw_power(ctx, key, i, n, (u1)ctx->alias->count)
+                                    : presample_draw(key, i, n, ctx->light_count);
+        uint32_t id[LANES], where[LANES];
+        float inverse[LANES];
+        ustore(id, p.light);
+        ustore(where, p.place);
+        rstore(inverse, p.inverse);
+        for (int l = 0; l < LANES; l++)
+            drawn[first + (uint32_t)l] = (presample_pick1){ id[l], where[l], inverse[l] };
+        uint32_t bits = mbits(presample_plain(light_load(ctx, p.light)));
+        plain[first / 32] |= bits << first % 32;
+        all += (uint32_t)__builtin_popcount(bits);
+    }
+    return all;
+}
+
+/* Puts the samples where they belong in the subset; `all` of them are plain. */
+static void part_samples(u1 key, const presample_pick1 *drawn, const uint32_t *plain, uint32_t n, uint32_t all,
                          presample_row *out) {
-    uint32_t to = 0;
-    for (int last = 0; last < 2; last++)
-        for (uint32_t i = 0; i < n; i++) {
-            const light_record *l = &ctx->lights[drawn[i].light];
-            if ((l->kind == LIGHT_SPOT || l->flags & LIGHT_PROFILE_BITS) != last)
-                continue;
-            uint32_t at = presample_turned(key, to++);
-            out[at / BLOCK].light[at % BLOCK] = drawn[i].light;
-            out[at / BLOCK].place[at % BLOCK] = drawn[i].place;
-            out[at / BLOCK].inverse[at % BLOCK] = drawn[i].inverse;
+    for (uint32_t first = 0, sum = 0; first < n; first += LANES) {
+        uint32_t bits = plain[first / 32] >> first % 32 & ((1u << LANES) - 1), before[LANES], to[LANES];
+        for (int l = 0; l < LANES; l++)
+            before[l] = sum + (uint32_t)__builtin_popcount(bits & ((1u << l) - 1));
+        sum += (uint32_t)__builtin_popcount(bits);
+        u32 i = KU(first) + lane_numbers(0);
+        ustore(to, presample_turned(key, presample_rank(mload(bits, 0), i, uload(before), all)));
+        for (uint32_t l = 0; l < LANES; l++) {
+            presample_row *row = &out[to[l] / BLOCK];
+            row->light[to[l] % BLOCK] = drawn[first + l].light;
+            row->place[to[l] % BLOCK] = drawn[first + l].place;
+            row->inverse[to[l] % BLOCK] = drawn[first + l].inverse;
         }
+    }
 }
 
 /* What surfaces look at. */
@@ -65,31 +94,12 @@ static void brief_samples(const struct core_context *ctx, presample_row *p) {
 
 static void presample_lights(const struct core_context *ctx, uint32_t subset, int m, bool by_power,
                              presample_pick1 *scratch, presample_row *out) {
-    u1 key = presample_key(ctx->frame->seed, subset, ctx->frame->index, 0), n = (u1)m * BLOCK,
-       share = presample_share(n);
-    for (uint32_t first = 0; first < n; first += LANES) {
-        u32 i = KU(first) + lane_numbers(0), bits = presample_bits(key, i, share), place = presample_place(key, i);
-        pick p = { scale_u32(bits, KU(ctx->light_count)), K((float)ctx->light_count) };
-        if (by_power)
-            p = ctx->alias->count ? alias_draw(ctx, KU(ctx->alias->count), bits, presample_choice(key, i))
-                                  : (pick){ KU(0u), K(0.0f) };
-        light_prefetch((const float *)ctx->lights, p.light);
-        uint32_t id[LANES], where[LANES];
-        float inverse[LANES];
-        ustore(id, p.light);
-        ustore(where, place);
-        rstore(inverse, p.inverse);
-        for (int l = 0; l < LANES; l++)
-            scratch[first + (uint32_t)l] = (presample_pick1){ id[l], where[l], inverse[l] };
-    }
-    part_samples(ctx, key, scratch, n, out);
+    u1 key = presample_key(ctx->frame->seed, subset, ctx->frame->index, 0), n = (u1)m * BLOCK;
+    uint32_t plain[PLAIN_WORDS];
+    uint32_t all = draw_samples(ctx, key, n, by_power, scratch, plain);
+    part_samples(key, scratch, plain, n, all, out);
     for (int i = 0; i < m; i++)
         brief_samples(ctx, &out[i]);
-}
-
-/* Which of so many subsets a block, or a set of influence, of that number has. */
-static uint32_t subset_of(const struct core_context *ctx, uint32_t number, uint32_t subsets) {
-    return (uint32_t)((uint64_t)presample_key(ctx->frame->seed, number, ctx->frame->index, 1) * subsets >> 32);
 }
 
 static void presampled(const struct core_context *frame, const gblock *g, uint32_t lanes, const uint32_t pixels[BLOCK],
