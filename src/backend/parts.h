@@ -34,7 +34,4 @@ typedef struct noc_ray_scale {
 /* Takes in what is new in the scene. It stays as it is where something is removed. */
 void noc_ray_scale_follow(const noc_scene *scene, noc_ray_scale *scale);
 
-/* A number that is the same while rays meet the same. */
-static inline uint64_t noc_scene_shape(const noc_scene_versions *v) { return v->geometry + v->instances; }
-
 #endif

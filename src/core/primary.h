@@ -6,6 +6,7 @@
 
 #include "core/camera.h"
 #include "core/hit.h"
+#include "core/placement.h"
 #include "core/receiver.h"
 #include "core/reservoir.h"
 #include "core/texture.h"
@@ -27,40 +28,9 @@ struct ray_hit {
     u32 light; /* that the triangle is of, or NO_LIGHT */
 };
 
-/* Rows of an instance's transform, a rotation times a scale, and its translation. */
-struct placement {
-    v3 x;
-    v3 y;
-    v3 z;
-    v3 at;
-};
-
 #ifndef CORE_GLSL
 typedef struct ray_hit ray_hit;
-typedef struct placement placement;
 #endif
-
-FN v3 placed_point(placement m, v3 p) {
-    EXACT real x = dot3(m.x, p) + m.at.x;
-    EXACT real y = dot3(m.y, p) + m.at.y;
-    EXACT real z = dot3(m.z, p) + m.at.z;
-    return V3(x, y, z);
-}
-
-FN v3 placed_normal(placement m, v3 n) {
-    v3 t = V3(dot3(m.x, n), dot3(m.y, n), dot3(m.z, n));
-    real length = sqrt_(dot3(t, t));
-    EXACT real x = t.x / length;
-    EXACT real y = t.y / length;
-    EXACT real z = t.z / length;
-    return V3(x, y, z);
-}
-
-/* Square of the transform's scale. */
-FN real placement_scale2(placement m) {
-    v3 column = V3(m.x.x, m.y.x, m.z.x);
-    return dot3(column, column);
-}
 
 /* The light whose emitting side is seen, or NO_LIGHT. front: the triangle's front is. A dark light and the back of a
  * one-sided one are surfaces like others. */

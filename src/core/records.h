@@ -53,9 +53,25 @@ struct material_record {
     float alpha; /* roughness^2 */
 };
 
+/* Rows of a 3x4 transform: a rotation times a scale, and a translation. */
+struct placement_rows {
+    float m[12];
+};
+#if !defined(CORE_GLSL)
+typedef struct placement_rows placement_rows;
+#endif
+
+/* From where an instance is to where it was in the frame before: core/placement.h. */
+struct placing_back {
+    float from[3];
+    uint32_t known; /* 0: it was not there */
+    placement_rows rows;
+};
+
 #if !defined(CORE_GLSL)
 typedef struct light_record light_record;
 typedef struct material_record material_record;
+typedef struct placing_back placing_back;
 
 #define RECORD_SIZE(type, words) _Static_assert(sizeof(struct type) == 4 * (words), #type " has no gaps")
 #define RECORD_FIELD(type, field, word)                                                                                \
@@ -70,6 +86,10 @@ RECORD_FIELD(light_record, b, 8);
 RECORD_FIELD(light_record, flags, 11);
 RECORD_FIELD(light_record, e, 12);
 RECORD_FIELD(light_record, area, 15);
+
+RECORD_SIZE(placing_back, 16);
+RECORD_FIELD(placing_back, known, 3);
+RECORD_FIELD(placing_back, rows, 4);
 
 RECORD_SIZE(material_record, 8);
 RECORD_FIELD(material_record, albedo, 0);

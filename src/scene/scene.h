@@ -83,6 +83,12 @@ typedef struct noc_scene_instance {
     uint32_t *lights;    /* [lights of the model] each one's slot; owned */
 } noc_scene_instance;
 
+/* Where an instance is; model 0: there is none in the slot. */
+typedef struct noc_scene_place {
+    uint32_t model;
+    float transform[12];
+} noc_scene_place;
+
 /* A place on a route. Legs lie one behind the other; the first stop of a leg is 0 m along it, and is reached in the
  * second in which the leg before ends. */
 typedef struct noc_scene_stop {
@@ -212,6 +218,9 @@ typedef struct noc_scene_versions {
     uint64_t settled;     /* the static half is to be made anew; where it is not, its lights only went dark */
     uint64_t environment; /* another map */
 } noc_scene_versions;
+
+/* A number that is the same while rays meet the same. */
+static inline uint64_t noc_scene_shape(const noc_scene_versions *v) { return v->geometry + v->instances; }
 
 typedef struct noc_range {
     size_t first, end; /* first >= end: nothing */

@@ -194,6 +194,43 @@ static void all_kinds_have_the_same_bits(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Frames while instances move, and lights are switched, moved, added and removed: the past scene's rays, lights and
+ * surfaces. */
+static void edits_have_the_same_bits(void **state) {
+    static const struct {
+        const char *name;
+        noc_bias bias;
+    } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE }, { "edits, mis", NOC_BIAS_MIS } };
+    noc_log *log = noc_log_create(NULL);
+    noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
+    (void)state;
+    for (size_t row = 0; row < NOC_COUNT(rows); row++) {
+        int car, added = -1;
+        noc_scene *scene = all_kinds(&car);
+        twins t;
+        if (!open_twins(scene, true, log, &t))
+            skip();
+        noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
+        p.bias = rows[row].bias;
+        for (int f = 0; f < 9; f++) {
+            noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * f, 0, 1.5, 0, -4 + 0.1 * f, 0, 0, 1.5, 0 } };
+            noc_light l = crowd_light(70 + f, -3);
+            if (f && f != 4)
+                assert_int_equal(noc_scene_set_transform(scene, car, in.transform), NOC_OK);
+            if (f == 2 || f == 3)
+                assert_int_equal(noc_scene_set_emission(scene, 5, (float[3]){ 90.f * (float)f, 10, 10 }), NOC_OK);
+            if (f == 5)
+                assert_true((added = noc_scene_add_light(scene, &l)) >= 0);
+            if (f == 7)
+                assert_int_equal(noc_scene_remove_light(scene, added), NOC_OK);
+            assert_int_equal(noc_scene_commit(scene), NOC_OK);
+            expect_same_frame(&t, &camera, &p, rows[row].name);
+        }
+        close_twins(&t);
+        noc_scene_destroy(scene);
+    }
+}
+
 /* ---- rays ---- */
 
 /* Frames with rays of each machine's own: the pictures agree but for what grazes an edge. */
@@ -234,6 +271,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plans_have_the_same_bits),
         cmocka_unit_test(all_kinds_have_the_same_bits),
+        cmocka_unit_test(edits_have_the_same_bits),
         cmocka_unit_test(rays_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -52,9 +52,11 @@ static inline hit_numbers find_numbers(const vk_world *w) {
 
 /* The entry of an instance: entries of the world come first, then those of instances in their order. */
 static inline uint32_t entry_of(const vk_world *w, const hit_numbers *n, uint32_t triangle, uint32_t instance) {
-    uint32_t entry = (uint32_t)w->structure.world.len;
+    uint32_t entry = 0;
     if (instance == NO_INSTANCE)
         return n->entry[triangle];
+    for (size_t i = 0; i < w->structure.world.len; i++)
+        entry += (uint32_t)w->structure.world.data[i]->blas.len;
     for (uint32_t i = 0; i < instance; i++)
         entry += w->scene->instances.data[i].model != 0;
     return entry;

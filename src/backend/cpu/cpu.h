@@ -8,6 +8,7 @@
 #include "backend/parts.h"
 #include "light/learned.h"
 #include "light/set.h"
+#include "render/past.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -157,14 +158,6 @@ typedef struct cpu_device {
     void *rays; /* the tracer's device */
 } cpu_device;
 
-/* Where an instance stands; model 0: there is none in the slot. */
-typedef struct cpu_place {
-    uint32_t model;
-    float transform[12];
-} cpu_place;
-
-typedef NOC_ARRAY(cpu_place) cpu_places;
-
 /* A scene on a device: its ray tracing structure, and what light candidates are drawn from. */
 typedef struct cpu_world {
     cpu_device *device;
@@ -172,8 +165,7 @@ typedef struct cpu_world {
     noc_log *log;
     void *rays;           /* the tracer's structure */
     pthread_mutex_t lock; /* held while it follows the scene */
-    uint64_t shape, past; /* noc_scene_shape of the scene that it knows, and of that before */
-    cpu_places places[2]; /* of instances: now, and then */
+    noc_placings placings;
     double build_seconds;
     noc_ray_scale scale;
     noc_material_record no_material; /* stands in where the scene has none */
@@ -195,16 +187,12 @@ typedef struct cpu_view {
     noc_learned *learned;   /* it is of places in the scene, so it outlives the size of the picture */
     uint32_t learned_epoch; /* noc_frame.epoch that it is of */
     learned_tile *learned_tiles;
-    noc_observations *observations; /* of the frame's tiles */
-    float list_brightness;          /* mean luminance that the last frame expected, cd/m2; 0: not known */
-    /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
-    noc_light_record *previous_lights;
-    size_t past_room;        /* lights that there is room for, those beyond the frame's are dark */
-    noc_scene_versions seen; /* of the scene in the last complete frame */
-    bool past_filled;        /* previous_lights is of that frame */
-    bool past_lost;          /* the frame before saw another scene, of which something is not known any more */
-    size_t chunks;           /* of lights, that the reference has room for */
-    presample_row *samples;  /* that the blocks of a frame share: [PRESAMPLES / 16]; NULL: never asked for */
+    noc_observations *observations;    /* of the frame's tiles */
+    float list_brightness;             /* mean luminance that the last frame expected, cd/m2; 0: not known */
+    noc_light_record *previous_lights; /* all lights as they were in the last frame that left reservoirs */
+    noc_past past;
+    size_t chunks;                     /* of lights, that the reference has room for */
+    presample_row *samples;            /* that the blocks of a frame share: [PRESAMPLES / 16]; NULL: never asked for */
     presample_volumes *sample_volumes; /* influence: parallel */
     uint32_t subsets;
     worker *workers;

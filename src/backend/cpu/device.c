@@ -33,34 +33,17 @@ void noc_cpu_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, 
     noc_pool_run(((cpu_device *)device)->pool, items, fn, ctx);
 }
 
-static bool copy_places(const noc_scene *scene, cpu_places *to) {
-    if (!array_reserve(to, scene->instances.len))
-        return false;
-    to->len = scene->instances.len;
-    for (size_t i = 0; i < to->len; i++) {
-        const noc_scene_instance *in = &scene->instances.data[i];
-        to->data[i].model = in->model;
-        memcpy(to->data[i].transform, in->transform, sizeof(in->transform));
-    }
-    return true;
-}
-
 static noc_status follow(cpu_world *w) {
-    uint64_t shape = noc_scene_shape(&w->scene->versions);
-    if (w->shape == shape)
+    if (w->placings.shape == noc_scene_shape(&w->scene->versions))
         return NOC_OK;
-    if (!array_reserve(&w->places[1], w->scene->instances.len))
+    if (!noc_placings_reserve(&w->placings, w->scene))
         return noc_no_memory(w->log, "world");
     noc_status status = w->device->tracer->follow(w->rays);
     if (status != NOC_OK)
         return status;
-    cpu_places then = w->places[0];
-    w->places[0] = w->places[1];
-    w->places[1] = then;
-    w->past = w->shape;
-    w->shape = shape;
+    noc_placings_follow(&w->placings, w->scene);
     noc_ray_scale_follow(w->scene, &w->scale);
-    return copy_places(w->scene, &w->places[0]) ? NOC_OK : NOC_ERR_MEMORY; /* there is room */
+    return NOC_OK;
 }
 
 noc_status noc_cpu_follow(cpu_world *w) {
@@ -77,8 +60,7 @@ void noc_cpu_world_destroy(void *state) {
     noc_light_set_destroy(w->lights);
     if (w->rays)
         w->device->tracer->release(w->rays);
-    for (int i = 0; i < 2; i++)
-        array_free(&w->places[i]);
+    noc_placings_free(&w->placings);
     pthread_mutex_destroy(&w->lock);
     free(w);
 }
@@ -91,11 +73,12 @@ noc_status noc_cpu_world_create(void *device, const noc_scene *scene, void **sta
         return noc_no_memory(d->log, "world");
     *w = (cpu_world){ .device = d, .scene = scene, .log = d->log };
     pthread_mutex_init(&w->lock, NULL);
-    w->shape = w->past = noc_scene_shape(&scene->versions);
     noc_ray_scale_follow(w->scene, &w->scale);
     noc_status status = d->tracer->build(d->rays, scene, d->log, &w->rays);
-    if (status == NOC_OK && !copy_places(scene, &w->places[0]))
+    if (status == NOC_OK && !noc_placings_reserve(&w->placings, scene))
         status = noc_no_memory(d->log, "world");
+    if (status == NOC_OK)
+        noc_placings_follow(&w->placings, scene);
     w->build_seconds = noc_wall_seconds() - start;
     if (status == NOC_OK && !(w->lights = noc_light_set_create(scene, d->pool, noc_cpu_probe, w, d->log)))
         status = NOC_ERR_MEMORY;

@@ -130,7 +130,7 @@ static void start(const stage_run *run, const tile_block *block, int set, combin
     c->visible = run->s->b.visible[set][block->at];
 }
 
-static bool has_history(const stage_run *run) { return run->ctx.frame->flags & FRAME_HISTORY && !run->s->past_lost; }
+static bool has_history(const stage_run *run) { return run->ctx.frame->flags & FRAME_HISTORY && !run->s->past.lost; }
 
 void noc_cpu_seen_before(stage_run *run, worker *w, tile t) {
     const float two = 2 * (float)run->ctx.frame->draws;

@@ -56,7 +56,8 @@ noc_status noc_vk_finish_flights(vk_view *v) {
 
 static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
     return (vk_facts){ .constants = &frame->constants,
-                       .history = frame->constants.flags & FRAME_HISTORY,
+                       .history = frame->constants.flags & FRAME_HISTORY && !v->past.lost,
+                       .past = noc_past_other_shape(&v->past, v->scene),
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
@@ -71,7 +72,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
     return (vk_binding){
         .frame = v->flights[v->flight].constants.address,
         .lights = w->lights.buffer.address,
-        .past_lights = w->lights.buffer.address,
+        .past_lights = noc_past_other_lights(&v->past, v->scene) ? v->past_lights.address : w->lights.buffer.address,
         .materials = w->materials.buffer.address,
         .profiles = w->profiles.buffer.address,
         .texels = w->texels.buffer.address,
@@ -82,6 +83,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .image_places = w->image_places.buffer.address,
         .image_corners = w->image_corners.buffer.address,
         .instances = w->instances.buffer.address,
+        .backs = w->backs.buffer.address,
         .instance_lights = w->instance_lights.buffer.address,
         .entries = w->structure.entries.address,
         .alias = w->alias.buffer.address,
@@ -105,6 +107,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .light_count = (uint32_t)v->scene->lights.len,
         .textured = v->scene->texels.len > 0,
         .instanced = b->instance.bytes > 0,
+        .moved = b->instance.bytes > 0 && noc_past_other_shape(&v->past, v->scene),
         .slots = b->blocks_x * b->blocks_y * BLOCK,
         .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,
@@ -285,6 +288,8 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = finish(v, &v->flights[v->flight]);
     if (status == NOC_OK)
         status = noc_vk_world_follow(v->world);
+    if (status == NOC_OK)
+        status = noc_vk_view_begin_past(v, frame->plan);
     if (status == NOC_OK && frame->plan->draws)
         status = noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
     v->map_light = NULL;
@@ -342,11 +347,23 @@ noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *sta
     return status == NOC_OK ? status : drop(v, status);
 }
 
+/* The frame's reservoirs were made with the lights as they are. */
+static void keep_lights(vk_view *v) {
+    noc_range r = noc_past_keep(&v->past, v->scene);
+    VkBufferCopy copy = { .srcOffset = r.first * sizeof(light_record),
+                          .dstOffset = r.first * sizeof(light_record),
+                          .size = (r.end - r.first) * sizeof(light_record) };
+    if (r.first < r.end)
+        vkCmdCopyBuffer(v->flights[v->flight].commands, v->world->lights.buffer.buffer, v->past_lights.buffer, 1,
+                        &copy);
+}
+
 static noc_status submit(vk_view *v) {
     vk_device *d = v->device;
     vk_flight *f = &v->flights[v->flight];
     VkBufferCopy copy = { .size = f->counts.bytes };
     noc_vk_barrier(f->commands);
+    keep_lights(v);
     vkCmdCopyBuffer(f->commands, v->counters.buffer, f->counts.buffer, 1, &copy);
     VkResult result = submit_commands(d, f);
     if (result != VK_SUCCESS)

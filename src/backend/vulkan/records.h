@@ -7,12 +7,10 @@
 #include "core/frame.h"
 #include "core/records.h"
 
-/* An instance of a model, and how it was in the frame before. */
+/* An instance of a model. */
 struct vk_instance_record {
-    float transform[12]; /* model to world, rows of 3x4 */
-    float back[12];      /* from where it is to where it was */
-    uint32_t lights;     /* place of its lights' numbers in the table of such; 0xffffffff: it has none */
-    uint32_t known;      /* 1: it was there in the frame before */
+    placement_rows transform; /* model to world */
+    uint32_t lights;          /* place of its lights' numbers in the table of such */
 };
 
 #define VK_REFERENCE_CHUNKS 64u /* of lights, that a dispatch sums up */
@@ -38,6 +36,7 @@ struct vk_instance_record {
     ADDRESS(Words, image_places)   /* of each material the place of its texture + 1; 0: none */                        \
     ADDRESS(Floats, image_corners) /* 2 a vertex */                                                                    \
     ADDRESS(Instances, instances)                                                                                      \
+    ADDRESS(Backs, backs) /* of each instance */                                                                       \
     ADDRESS(Words, instance_lights)                                                                                    \
     ADDRESS(Entries, entries)                                                                                          \
     ADDRESS(Words, alias)                                                                                              \
@@ -65,6 +64,7 @@ struct vk_instance_record {
     WORD(uint32_t, light_count)                                                                                        \
     WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
+    WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
     WORD(uint32_t, slots)     /* pixels of the picture's blocks: rays of one slot */                                   \
     WORD(uint32_t, blocks_y)                                                                                           \
     WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
@@ -95,7 +95,7 @@ struct vk_entry {
 
 typedef struct vk_instance_record vk_instance_record;
 typedef struct vk_entry vk_entry;
-RECORD_SIZE(vk_instance_record, 26);
+RECORD_SIZE(vk_instance_record, 13);
 RECORD_SIZE(vk_entry, 4);
 
 #define VK_ADDRESS_FIELD(type, name) uint64_t name;

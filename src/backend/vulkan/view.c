@@ -111,6 +111,38 @@ noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch) {
     return status;
 }
 
+/* Lights that the frame before did not have are dark in it. */
+static noc_status grow_past(vk_view *v, size_t room) {
+    vk_device *d = v->device;
+    vk_buffer more;
+    VkCommandBuffer commands;
+    VkDeviceSize have = v->past.filled ? v->past.room * sizeof(light_record) : 0;
+    noc_status status =
+        noc_vk_make_buffer(d, room * sizeof(light_record), 0, VK_PLACE_DEVICE, "the previous frame's lights", &more);
+    if (status != NOC_OK)
+        return status;
+    if ((status = noc_vk_open_upload(d, &commands)) != NOC_OK) {
+        noc_vk_free_buffer(d, &more);
+        return status;
+    }
+    vkCmdFillBuffer(commands, more.buffer, 0, VK_WHOLE_SIZE, 0);
+    noc_vk_barrier(commands);
+    if (have)
+        vkCmdCopyBuffer(commands, v->past_lights.buffer, more.buffer, 1, &(VkBufferCopy){ .size = have });
+    status = noc_vk_wait_idle(d);
+    noc_vk_free_buffer(d, &v->past_lights);
+    v->past_lights = more;
+    v->past.room = room;
+    return status;
+}
+
+noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan) {
+    size_t room = noc_past_begin(&v->past, v->scene, plan);
+    noc_status status = room > v->past.room ? grow_past(v, room) : NOC_OK;
+    noc_past_check(&v->past, v->scene, &v->world->placings, plan);
+    return status;
+}
+
 noc_status noc_vk_view_fit_samples(vk_view *v, int draws) {
     enum { ROW_BYTES = 17 * 4 * BLOCK }; /* sample_row of the shaders */
     v->subsets = presample_subsets((u1)draws, v->b.blocks_x * v->b.blocks_y);

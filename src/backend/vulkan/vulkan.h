@@ -11,6 +11,7 @@
 #include "backend/vulkan/schedule.h"
 #include "light/set.h"
 #include "render/backend.h"
+#include "render/past.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -145,13 +146,13 @@ typedef struct vk_world {
     vk_structure structure;
     vk_array positions, indices, triangle_material, triangle_light, materials, lights, profiles, texels;
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
-    vk_array instances, instance_lights;
+    vk_array instances, instance_lights, backs;
     vk_array backdrop, environment, environment_slots, environment_sines;
     vk_array alias, tree;
     vk_sources_key drawn_from;
     noc_scene_versions seen; /* that the arrays know */
     bool filled;
-    uint64_t shape, past; /* noc_scene_shape of the scene that the structure knows, and of that before */
+    noc_placings placings;
     double build_seconds;
     noc_ray_scale scale;
     noc_light_set *lights_set;
@@ -213,6 +214,7 @@ typedef struct vk_view {
     vk_buffer samples, scratch, counters;
     vk_steps steps; /* of the stage at work */
     vk_buffer past_lights;
+    noc_past past;
     noc_light_sources sources;
     const noc_map_light *map_light;
     noc_light_stats told;
@@ -300,6 +302,8 @@ size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
 /* Room for so many rays a pixel, so much scratch, and for instances where the scene has some. */
 noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch);
+/* Room for the lights of the frame before, where the plan reuses what it made, and whether it can be. */
+noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
 noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
 noc_status noc_vk_read_picture(void *view, noc_image *image);

@@ -182,7 +182,7 @@ static noc_status follow_instances(vk_world *w) {
     for (size_t i = 0; ok && i < count; i++) {
         const noc_scene_instance *in = &s->instances.data[i];
         size_t n = in->model ? s->models.data[in->model - 1].lights.len : 0;
-        memcpy(records[i].transform, in->transform, sizeof(in->transform));
+        memcpy(records[i].transform.m, in->transform, sizeof(in->transform));
         records[i].lights = (uint32_t)lights;
         if (n)
             memcpy(numbers + lights, in->lights, n * sizeof(*numbers));
@@ -192,7 +192,8 @@ static noc_status follow_instances(vk_world *w) {
     if (ok)
         status = fill(w, &w->instances, records, count * sizeof(*records), 0, count * sizeof(*records), 0, "instances");
     if (status == NOC_OK)
-        status = fill(w, &w->instance_lights, numbers, (lights + 1) * 4, 0, (lights + 1) * 4, 0, "instances");
+        status =
+            fill(w, &w->instance_lights, numbers, (lights + 1) * 4, 0, (lights + 1) * 4, 0, "instances");
     free(records);
     free(numbers);
     return status;
@@ -211,20 +212,26 @@ static noc_status follow_arrays(vk_world *w) {
     return status == NOC_OK ? follow_instances(w) : status;
 }
 
+/* The ray tracing structure, and the ways of instances back to where they were. */
+static noc_status follow_shape(vk_world *w) {
+    if (!noc_placings_reserve(&w->placings, w->scene))
+        return noc_no_memory(w->log, "world");
+    noc_status status = w->filled ? noc_vk_structure_follow(w) : noc_vk_structure_create(w);
+    if (status != NOC_OK)
+        return status;
+    noc_placings_follow(&w->placings, w->scene);
+    noc_ray_scale_follow(w->scene, &w->scale);
+    size_t bytes = w->placings.back.len * sizeof(*w->placings.back.data);
+    return bytes ? fill(w, &w->backs, w->placings.back.data, bytes, 0, bytes, 0, "instances") : NOC_OK;
+}
+
 noc_status noc_vk_world_follow(vk_world *w) {
     const noc_scene_versions *now = &w->scene->versions;
-    uint64_t shape = noc_scene_shape(now);
     if (w->filled && !memcmp(&w->seen, now, sizeof(*now)))
         return NOC_OK;
     noc_status status = follow_arrays(w);
-    if (status == NOC_OK && (!w->filled || w->shape != shape)) {
-        status = w->filled ? noc_vk_structure_follow(w) : noc_vk_structure_create(w);
-        if (status == NOC_OK) {
-            w->past = w->filled ? w->shape : shape;
-            w->shape = shape;
-            noc_ray_scale_follow(w->scene, &w->scale);
-        }
-    }
+    if (status == NOC_OK && (!w->filled || w->placings.shape != noc_scene_shape(now)))
+        status = follow_shape(w);
     if (status == NOC_OK)
         status = noc_vk_submit_upload(w->device);
     if (status != NOC_OK)
@@ -271,11 +278,25 @@ void noc_vk_world_destroy(void *world) {
     if (!w)
         return;
     vk_device *d = w->device;
-    vk_array *const arrays[] = { &w->positions,    &w->indices,       &w->triangle_material, &w->triangle_light,
-                                 &w->materials,    &w->lights,        &w->profiles,          &w->texels,
-                                 &w->image_places, &w->image_corners, &w->instances,         &w->instance_lights,
-                                 &w->backdrop,     &w->environment,   &w->environment_slots, &w->environment_sines,
-                                 &w->alias,        &w->tree };
+    vk_array *const arrays[] = { &w->positions,
+                                 &w->indices,
+                                 &w->triangle_material,
+                                 &w->triangle_light,
+                                 &w->materials,
+                                 &w->lights,
+                                 &w->profiles,
+                                 &w->texels,
+                                 &w->image_places,
+                                 &w->image_corners,
+                                 &w->instances,
+                                 &w->instance_lights,
+                                 &w->backs,
+                                 &w->backdrop,
+                                 &w->environment,
+                                 &w->environment_slots,
+                                 &w->environment_sines,
+                                 &w->alias,
+                                 &w->tree };
     noc_light_set_destroy(w->lights_set);
     noc_vk_forget_host_world(w);
     pthread_mutex_lock(&d->lock);
@@ -283,6 +304,7 @@ void noc_vk_world_destroy(void *world) {
     for (size_t i = 0; i < NOC_COUNT(arrays); i++)
         free_array(d, arrays[i]);
     noc_vk_structure_destroy(w);
+    noc_placings_free(&w->placings);
     pthread_mutex_unlock(&d->lock);
     free(w);
 }

@@ -46,6 +46,7 @@ ARRAY(Materials, material_record)
 ARRAY(Floats, float)
 ARRAY(Words, uint)
 ARRAY(Instances, vk_instance_record)
+ARRAY(Backs, placing_back)
 
 /* vk_entry */
 struct tlas_entry {

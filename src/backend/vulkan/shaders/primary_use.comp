@@ -8,15 +8,6 @@ uint texel_load(uint place) { return HERE.texels.at[place]; }
 
 #include "core/primary.h"
 
-placement placement_of(vk_instance_record r) {
-    placement m;
-    m.x = vec3(r.transform[0], r.transform[1], r.transform[2]);
-    m.y = vec3(r.transform[4], r.transform[5], r.transform[6]);
-    m.z = vec3(r.transform[8], r.transform[9], r.transform[10]);
-    m.at = vec3(r.transform[3], r.transform[7], r.transform[11]);
-    return m;
-}
-
 vec2 corner_in_image(uint vertex) {
     return vec2(HERE.image_corners.at[2u * vertex], HERE.image_corners.at[2u * vertex + 1u]);
 }
@@ -62,7 +53,7 @@ void main() {
         bool placed = instance != NO_INSTANCE;
         placement m;
         if (placed) {
-            m = placement_of(HERE.instances.at[instance]);
+            m = placement_of_rows(HERE.instances.at[instance].transform);
             if (h.light != NO_LIGHT)
                 h.light = HERE.instance_lights.at[HERE.instances.at[instance].lights + h.light];
         }

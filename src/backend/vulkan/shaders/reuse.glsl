@@ -1,6 +1,7 @@
 /* A pixel's combination with the reservoirs of others (core/combine.h): its neighbours by their numbers, and the two
  * halves between which rays are traced. */
 #include "core/neighbours.h"
+#include "core/placement.h"
 #include "core/reuse.h"
 #include "core/shading.h"
 #include "surfaces.glsl"
@@ -47,9 +48,19 @@ void offer_neighbour(int i, receiver here, SurfaceBlocks from, pixel at) {
 }
 
 #ifdef TEMPORAL
+/* What the pixel sees, where it was in the frame before. */
+receiver taken_back(place p) {
+    receiver here = receiver_at(HERE.surfaces, p.block, p.lane);
+    uint instance = HERE.moved != 0u ? HERE.instance.at[p.slot] : NO_INSTANCE;
+    if (instance != NO_INSTANCE && HERE.backs.at[instance].known != 0u)
+        here = receiver_back(here, splat3(HERE.backs.at[instance].from),
+                             placement_of_rows(HERE.backs.at[instance].rows));
+    return here;
+}
+
 /* The pixel of the frame before that saw what this one sees. */
 void gather(place p) {
-    receiver here = receiver_at(HERE.surfaces, p.block, p.lane);
+    receiver here = taken_back(p);
     neighbours_ = 1;
     most_m_ = FRAME.m_max;
     neighbour_eye_ = splat3(FRAME.previous.eye);
