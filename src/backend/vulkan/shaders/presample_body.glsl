@@ -1,38 +1,35 @@
-/* Draws a subset, a work group each. Samples whose target is always evaluated go last, so each is ranked: by bits in
- * shared memory and the sums of the words before. draw_sample is the includer's. */
+/* Draws a subset, a work group each. Samples whose target is always evaluated go last, so each is ranked: by bits of
+ * the plain ones in shared memory and the sums of the words before. draw_sample is the includer's. */
 #define MOST_WORDS 512 /* of 32 samples: 16 * 1024 candidates */
 layout(local_size_x = 256) in;
-shared uint late_[MOST_WORDS];
+shared uint plain_[MOST_WORDS];
 shared uint before_[MOST_WORDS + 1];
 
 void main() {
     uint n = HERE.draws * BLOCK, subset = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
-    uint key = presample_key(FRAME.seed, subset, FRAME.index, 0u), share = presample_share(n);
-    uint words = (n + 31u) / 32u;
+    uint key = presample_key(FRAME.seed, subset, FRAME.index, 0u), words = (n + 31u) / 32u;
     for (uint w = t; w < words; w += 256u)
-        late_[w] = 0u;
+        plain_[w] = 0u;
     barrier();
     for (uint i = t; i < n; i += 256u)
-        if (!presample_plain(light_load(draw_sample(key, i, share).light)))
-            atomicOr(late_[i / 32u], 1u << (i & 31u));
+        if (presample_plain(light_load(draw_sample(key, i, n).light)))
+            atomicOr(plain_[i / 32u], 1u << (i & 31u));
     barrier();
     for (uint w = t; w <= words; w += 256u) {
         uint sum = 0u;
         for (uint k = 0u; k < w; k++)
-            sum += bitCount(late_[k]);
+            sum += bitCount(plain_[k]);
         before_[w] = sum;
     }
     barrier();
     for (uint i = t; i < n; i += 256u) {
-        pick p = draw_sample(key, i, share);
-        uint word = late_[i / 32u], bit = 1u << (i & 31u);
-        uint late = before_[i / 32u] + bitCount(word & (bit - 1u));
-        uint rank = (word & bit) != 0u ? n - before_[words] + late : i - late;
+        presample_pick k = draw_sample(key, i, n);
+        uint word = plain_[i / 32u], bit = 1u << (i & 31u);
+        uint rank = presample_rank((word & bit) != 0u, i, before_[i / 32u] + bitCount(word & (bit - 1u)), before_[words]);
         uint at = presample_turned(key, rank), row = subset * HERE.draws + at / BLOCK, l = at % BLOCK;
-        uint place = presample_place(key, i);
-        presample_put(row, l, presample_of(light_load(p.light), unit_low(place), unit_high(place)));
-        HERE.samples.at[row].light[l] = p.light;
-        HERE.samples.at[row].place[l] = place;
-        HERE.samples.at[row].inverse[l] = p.inverse;
+        presample_put(row, l, presample_of(light_load(k.light), unit_low(k.place), unit_high(k.place)));
+        HERE.samples.at[row].light[l] = k.light;
+        HERE.samples.at[row].place[l] = k.place;
+        HERE.samples.at[row].inverse[l] = k.inverse;
     }
 }

@@ -4,10 +4,6 @@
 #include "bridge.glsl"
 #include "presample.glsl"
 
-pick draw_sample(uint key, uint i, uint share) {
-    if (HERE.alias_count == 0u)
-        return pick(0u, 0.0);
-    return alias_draw(HERE.alias_count, presample_bits(key, i, share), presample_choice(key, i));
-}
+presample_pick draw_sample(uint key, uint i, uint n) { return presample_draw_power(key, i, n, HERE.alias_count); }
 
 #include "presample_body.glsl"

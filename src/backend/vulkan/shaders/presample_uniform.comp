@@ -4,8 +4,6 @@
 #include "bridge.glsl"
 #include "presample.glsl"
 
-pick draw_sample(uint key, uint i, uint share) {
-    return pick(scale_u32(presample_bits(key, i, share), HERE.light_count), float(HERE.light_count));
-}
+presample_pick draw_sample(uint key, uint i, uint n) { return presample_draw(key, i, n, HERE.light_count); }
 
 #include "presample_body.glsl"
