@@ -58,6 +58,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
     return (vk_facts){ .constants = &frame->constants,
                        .history = frame->constants.flags & FRAME_HISTORY && !v->past.lost,
                        .past = noc_past_other_shape(&v->past, v->scene),
+                       .given = frame->receivers != NULL,
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
@@ -92,6 +93,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .backdrop = w->backdrop.buffer.address,
         .environment_slots = w->environment_slots.buffer.address,
         .environment_sines = w->environment_sines.buffer.address,
+        .given = v->given.address,
         .surfaces = b->surfaces[frame->gbuffer].address,
         .previous = b->surfaces[frame->previous_gbuffer].address,
         .instance = b->instance.address,
@@ -281,6 +283,20 @@ static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
     return noc_vk_view_fit(v, slots, noc_vk_scratch_bytes(frame->plan, &facts));
 }
 
+static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
+    size_t bytes = (size_t)v->b.width * (size_t)v->b.height * sizeof(*frame->receivers);
+    noc_status status = NOC_OK;
+    if (v->given.bytes < bytes) {
+        status = noc_vk_finish_flights(v);
+        noc_vk_free_buffer(v->device, &v->given);
+        if (status == NOC_OK)
+            status = noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, "receivers", &v->given);
+    }
+    if (status == NOC_OK)
+        status = noc_vk_write(v->device, &v->given, 0, frame->receivers, bytes);
+    return status == NOC_OK ? noc_vk_submit_upload(v->device) : status;
+}
+
 /* What the frame needs of the world and of the view, before anything is recorded. */
 static noc_status prepare(vk_view *v, const noc_frame *frame) {
     noc_status status = refuse(v, frame);
@@ -290,6 +306,8 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = noc_vk_world_follow(v->world);
     if (status == NOC_OK)
         status = noc_vk_view_begin_past(v, frame->plan);
+    v->draws = frame->plan->draws;
+    v->drawn = v->draws ? frame->plan->candidates : (noc_candidates)0;
     if (status == NOC_OK && frame->plan->draws)
         status = noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
     v->map_light = NULL;
@@ -299,6 +317,8 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = noc_vk_world_fill_sources(v->world, &v->sources, v->map_light);
     if (status == NOC_OK)
         status = fit_buffers(v, frame);
+    if (status == NOC_OK && frame->receivers)
+        status = upload_receivers(v, frame);
     return status == NOC_OK && shares(frame->plan) ? noc_vk_view_fit_samples(v, frame->plan->candidate_count) : status;
 }
 
@@ -389,6 +409,16 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     return drop(v, status);
 }
 
+void noc_vk_light_stats(void *view, noc_light_stats *out) {
+    const vk_view *v = view;
+    *out = (noc_light_stats){ .candidates = v->drawn, .lights = v->scene->lights.len };
+    out->scene_bytes = noc_vk_world_bytes(v->world);
+    if (!v->draws)
+        return;
+    out->build_seconds = noc_light_set_seconds(v->world->lights_set, v->drawn);
+    out->bytes = noc_light_set_bytes(v->world->lights_set, v->drawn);
+}
+
 void noc_vk_stats(void *view, noc_frame_stats *out) {
     vk_view *v = view;
     const vk_device *d = v->device;
@@ -444,9 +474,4 @@ void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *r
     (void)view;
     (void)camera;
     (void)rows;
-}
-
-void noc_vk_light_stats(void *view, noc_light_stats *stats) {
-    const vk_view *v = view;
-    *stats = (noc_light_stats){ .lights = v->scene->lights.len };
 }

@@ -45,6 +45,7 @@ struct vk_instance_record {
     ADDRESS(Floats, backdrop)                                                                                          \
     ADDRESS(Words, environment_slots)                                                                                  \
     ADDRESS(Floats, environment_sines)                                                                                 \
+    ADDRESS(Floats, given) /* receivers in place of what a camera sees */                                              \
     ADDRESS(SurfaceBlocks, surfaces)                                                                                   \
     ADDRESS(SurfaceBlocks, previous)                                                                                   \
     ADDRESS(Words, instance) /* that each pixel sees */                                                                \

@@ -40,6 +40,10 @@ static void trace(scheduling *s, int slots, bool past) {
 }
 
 static void primary(scheduling *s) {
+    if (s->facts->given) {
+        add(s, VK_SHADER_place, 0, R(SURFACES));
+        return;
+    }
     add(s, VK_SHADER_primary_ask, 0, R(RAYS) | R(ANSWERS));
     add(s, VK_SHADER_trace_closest, R(RAYS) | R(ANSWERS), R(HITS))->domain = VK_DOMAIN_RAYS;
     add(s, VK_SHADER_primary_use, R(HITS) | R(RAYS), R(SURFACES));

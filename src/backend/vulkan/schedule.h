@@ -52,6 +52,7 @@ typedef struct vk_facts {
     bool history; /* reservoirs of the frame before can be reused */
     bool past;    /* they were made with rays against the past scene */
     bool sky;     /* the sky, or a map, lights */
+    bool given;   /* receivers are given */
     uint32_t lights, blocks_x, blocks_y;
 } vk_facts;
 

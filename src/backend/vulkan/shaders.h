@@ -8,6 +8,7 @@
     TRACE(trace_occlusion)                                                                                             \
     COMPUTE(primary_ask)                                                                                               \
     COMPUTE(primary_use)                                                                                               \
+    COMPUTE(place)                                                                                                     \
     COMPUTE(presample_uniform)                                                                                         \
     COMPUTE(presample_power)                                                                                           \
     COMPUTE(candidates_shared)                                                                                         \

@@ -196,6 +196,7 @@ static void destroy(vk_view *v) {
     noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
     noc_vk_free_buffer(d, &v->scratch);
+    noc_vk_free_buffer(d, &v->given);
     array_free(&v->steps);
     noc_vk_free_buffer(d, &v->counters);
     noc_vk_free_buffer(d, &v->past_lights);

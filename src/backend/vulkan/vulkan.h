@@ -211,13 +211,14 @@ typedef struct vk_view {
     int flight; /* of the frame being made, or of the next one */
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
-    vk_buffer samples, scratch, counters;
+    vk_buffer samples, scratch, counters, given;
     vk_steps steps; /* of the stage at work */
     vk_buffer past_lights;
     noc_past past;
     noc_light_sources sources;
     const noc_map_light *map_light;
-    noc_light_stats told;
+    bool draws;           /* the last frame drew candidates */
+    noc_candidates drawn; /* from that */
     uint32_t subsets;
     uint64_t coverage_frames; /* of the mean */
     noc_frame_stats stats;    /* of finished frames since they were last asked for */
@@ -292,6 +293,8 @@ noc_status noc_vk_world_create(void *device, const noc_scene *scene, void **worl
 void noc_vk_world_destroy(void *world);
 /* Brings everything on the device to the scene as it is; the device is locked. */
 noc_status noc_vk_world_follow(vk_world *w);
+/* Bytes of the scene's geometry, materials and lights, and of the ray tracing structure. */
+size_t noc_vk_world_bytes(const vk_world *w);
 /* Uploads what the candidates of the sources are drawn from. */
 noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map);
 

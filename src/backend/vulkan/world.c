@@ -192,8 +192,7 @@ static noc_status follow_instances(vk_world *w) {
     if (ok)
         status = fill(w, &w->instances, records, count * sizeof(*records), 0, count * sizeof(*records), 0, "instances");
     if (status == NOC_OK)
-        status =
-            fill(w, &w->instance_lights, numbers, (lights + 1) * 4, 0, (lights + 1) * 4, 0, "instances");
+        status = fill(w, &w->instance_lights, numbers, (lights + 1) * 4, 0, (lights + 1) * 4, 0, "instances");
     free(records);
     free(numbers);
     return status;
@@ -271,6 +270,12 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
     if (status == NOC_OK)
         w->drawn_from = key;
     return status;
+}
+
+size_t noc_vk_world_bytes(const vk_world *w) {
+    return (size_t)(w->positions.buffer.bytes + w->indices.buffer.bytes + w->triangle_material.buffer.bytes +
+                    w->triangle_light.buffer.bytes + w->materials.buffer.bytes + w->lights.buffer.bytes) +
+           noc_vk_structure_bytes(w);
 }
 
 void noc_vk_world_destroy(void *world) {
