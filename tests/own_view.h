@@ -4,9 +4,11 @@
 
 #include <nocturne/render.h>
 
+static noc_backend_id own_backend = NOC_BACKEND_EMBREE; /* of views to come */
+
 /* threads: 0: one a core. NULL after reporting an error. */
 static inline noc_view *own_view(const noc_scene *scene, int threads, noc_log *log) {
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = threads }, log);
+    noc_device *device = noc_device_create(&(noc_device_params){ .threads = threads, .backend = own_backend }, log);
     noc_view *view = noc_view_create(device, scene);
     if (!view)
         noc_device_destroy(device);
