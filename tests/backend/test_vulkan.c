@@ -267,12 +267,69 @@ static void rays_agree(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* ---- views that render at the same time ---- */
+
+typedef struct {
+    noc_view *view;
+    noc_camera camera;
+    noc_render_params params;
+} job;
+
+static void *render_frames(void *user) {
+    job *j = user;
+    for (int f = 0; f < 4; f++)
+        if (noc_view_render(j->view, &j->camera, &j->params, NULL) != NOC_OK)
+            return NULL;
+    return noc_view_image(j->view);
+}
+
+/* Views of one scene in threads of their own have the pictures that each has alone. */
+static void views_are_independent(void **state) {
+    noc_log *log = noc_log_create(NULL);
+    noc_device *device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, log);
+    noc_image *images[4];
+    pthread_t threads[2];
+    job jobs[2];
+    int car;
+    (void)state;
+    if (!device) {
+        print_message("# skipped: %s\n", noc_log_last_error(log));
+        noc_log_destroy(log);
+        skip();
+    }
+    noc_scene *scene = all_kinds(&car);
+    for (int i = 0; i < 2; i++) {
+        jobs[i] =
+            (job){ .camera = look(2 * i, -11, 3, 0, 0, 2, 60), .params = all_kinds_params(NOC_METHOD_RESTIR, false) };
+        jobs[i].params.width += 16 * i;
+        jobs[i].view = noc_view_create(device, scene);
+        images[i] = render_frames(&jobs[i]);
+        assert_non_null(images[i]);
+        noc_view_reset(jobs[i].view);
+    }
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, render_frames, &jobs[i]), 0);
+    for (int i = 0; i < 2; i++) {
+        void *image;
+        pthread_join(threads[i], &image);
+        images[2 + i] = image;
+        assert_non_null(image);
+        assert_memory_equal(images[i]->rgb, images[2 + i]->rgb,
+                            3 * sizeof(float) * (size_t)images[i]->width * (size_t)images[i]->height);
+        noc_view_destroy(jobs[i].view);
+    }
+    for (int i = 0; i < 4; i++)
+        noc_image_destroy(images[i]);
+    noc_scene_destroy(scene);
+    noc_device_destroy(device);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans_have_the_same_bits),
-        cmocka_unit_test(all_kinds_have_the_same_bits),
-        cmocka_unit_test(edits_have_the_same_bits),
-        cmocka_unit_test(rays_agree),
+        cmocka_unit_test(plans_have_the_same_bits), cmocka_unit_test(all_kinds_have_the_same_bits),
+        cmocka_unit_test(edits_have_the_same_bits), cmocka_unit_test(rays_agree),
+        cmocka_unit_test(views_are_independent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,7 +90,6 @@ static void describe(vk_device *d) {
     d->tick = p.properties.limits.timestampPeriod * 1e-9;
     d->tick_mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     memcpy(d->name, p.properties.deviceName, sizeof(d->name));
-    noc_snprintf(d->path, sizeof(d->path), "vulkan, %s", d->name);
 }
 
 static noc_status make_device(vk_device *d) {

@@ -432,7 +432,7 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->picture_bytes = v->b.bytes;
     out->structure_bytes = noc_vk_structure_bytes(v->world);
     out->memory_bytes = d->bytes;
-    out->path = d->path;
+    out->path = "vulkan";
 }
 
 noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {

@@ -87,6 +87,9 @@ noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
 noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch) {
     vk_picture *b = &v->b;
     noc_status status = NOC_OK;
+    if ((uint64_t)slots_of(b) * (uint64_t)slots > v->device->rays.maxRayDispatchInvocationCount)
+        return noc_error(v->log, NOC_ERR_MEMORY, "vulkan: %d rays a pixel of %d x %d are more than the device takes",
+                         slots, b->width, b->height);
     if (b->slots < slots) {
         status = noc_vk_finish_flights(v);
         noc_vk_free_buffer(v->device, &b->rays);

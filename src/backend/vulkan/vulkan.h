@@ -66,10 +66,9 @@ typedef struct vk_device {
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR structures;
     char name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
-    char path[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE + 16]; /* noc_frame_stats.path */
-    bool software;                                    /* a processor plays the device */
-    double tick;                                      /* s, of a timestamp */
-    uint64_t tick_mask;                               /* valid bits of a timestamp; 0: there are none */
+    bool software;      /* a processor plays the device */
+    double tick;        /* s, of a timestamp */
+    uint64_t tick_mask; /* valid bits of a timestamp; 0: there are none */
     pthread_mutex_t lock;
     bool lost; /* reported */
     VkCommandPool commands;
