@@ -89,7 +89,6 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .entries = w->structure.entries.address,
         .alias = w->alias.buffer.address,
         .tree = w->tree.buffer.address,
-        .clusters = w->clusters.buffer.address,
         .environment = w->environment.buffer.address,
         .backdrop = w->backdrop.buffer.address,
         .environment_slots = w->environment_slots.buffer.address,
@@ -106,15 +105,13 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .hits = b->hits.address,
         .samples = v->samples.address,
         .scratch = v->scratch.address,
-        .tile_scratch = v->tile_scratch.address,
-        .lists = v->lists.address,
-        .ray_data = v->ray_data.address,
         .counters = v->counters.address,
         .light_count = (uint32_t)v->scene->lights.len,
         .textured = v->scene->texels.len > 0,
         .instanced = b->instance.bytes > 0,
         .moved = b->instance.bytes > 0 && noc_past_other_shape(&v->past, v->scene),
-        .tiles_x = (b->blocks_x + 3) / 4,
+        .slots = b->blocks_x * b->blocks_y * BLOCK,
+        .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,
         .subsets = v->subsets,
         .tree_root = v->sources.tree ? v->sources.tree->root : 0,
@@ -137,12 +134,11 @@ static void mark_time(vk_view *v, noc_pass pass) {
 
 static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
     const vk_picture *b = &v->b;
-    uint32_t rows = step->rows;
+    uint32_t rows = step->rows ? step->rows : b->blocks_y;
     VkCommandBuffer commands = v->flights[v->flight].commands;
     static const VkStridedDeviceAddressRegionKHR none = { 0 };
     switch (step->domain) {
     case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, 1); break;
-    case VK_DOMAIN_TILES: vkCmdDispatch(commands, (b->blocks_x + 3) / 4, (rows + 3) / 4, 1); break;
     case VK_DOMAIN_SUBSETS: vkCmdDispatch(commands, v->subsets, 1, 1); break;
     case VK_DOMAIN_RAYS:
         vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, rows,
@@ -169,8 +165,7 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     b->dimension = step->dimension;
     b->first = step->first;
     b->first_row = step->first_row;
-    b->rows = step->rows;
-    b->slots = v->b.blocks_x * step->rows * BLOCK;
+    b->rows = step->rows ? step->rows : v->b.blocks_y;
     bool traces = step->domain == VK_DOMAIN_RAYS;
     VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
     VkDeviceAddress address = f->constants.address + at;
@@ -278,14 +273,14 @@ static bool shares(const noc_plan *plan) {
 /* Room for the rays of the plan's steps, and for scratch. */
 static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
     vk_facts facts = facts_of(v, frame);
-    vk_need need = { 0 };
+    int slots = 1;
     for (int i = 0; i < frame->plan->count; i++) {
         v->steps.len = 0;
         if (!noc_vk_schedule(frame->plan, &frame->plan->stages[i], &facts, &v->steps))
             return noc_no_memory(v->log, "render");
-        noc_vk_find_need(&frame->plan->stages[i], &facts, &v->steps, &need);
+        slots = NOC_MAX(slots, noc_vk_slots(&v->steps));
     }
-    return noc_vk_view_fit(v, &need);
+    return noc_vk_view_fit(v, slots, noc_vk_scratch_bytes(frame->plan, &facts));
 }
 
 static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
@@ -445,7 +440,9 @@ noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
     const vk_picture *b = &v->b;
     vk_binding common = { .frame = f->constants.address, /* of an earlier frame: its width is all that is read */
                           .hits = b->hits.address,
-                          .counters = v->counters.address };
+                          .counters = v->counters.address,
+                          .slots = b->blocks_x * b->blocks_y * BLOCK,
+                          .blocks_y = b->blocks_y };
     VkResult result = begin_commands(f);
     noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
     f->steps = f->times_count = 0;

@@ -5,7 +5,6 @@
 
 #include "core/blocks.h"
 #include "core/frame.h"
-#include "core/list_limits.h"
 #include "core/records.h"
 
 /* An instance of a model. */
@@ -16,18 +15,6 @@ struct vk_instance_record {
 
 #define VK_REFERENCE_CHUNKS 64u /* of lights, that a dispatch sums up */
 #define VK_REFERENCE_RAYS 8u    /* of a pixel, that are traced at once */
-
-/* Lists. Of a half of the clusters (light/clusters.h): its levels; nodes of each; places of the levels' blocks and of
- * the lights' blocks in the buffer, in words. */
-#define VK_CLUSTER_HEAD 32
-#define VK_CLUSTER_NODES 1
-#define VK_CLUSTER_LEVELS 9
-#define VK_CLUSTER_LIGHTS 17
-/* A tile's list: entries, copies, lights, weights. Scratch of making it: scores, three words a group, patches, pieces.
- */
-#define VK_LIST_WORDS (2 + 2 * LIST_ROOM)
-#define VK_TILE_WORDS ((LIST_GROUPS + 1) * 19 + 16 * LIST_PATCHES + 256)
-#define VK_RAY_DATA_WORDS (16 * 8 + 8)
 
 #define VK_COUNTERS 64 /* of each kind; invocations spread over them */
 #define VK_COUNT_RAYS 0
@@ -54,7 +41,6 @@ struct vk_instance_record {
     ADDRESS(Entries, entries)                                                                                          \
     ADDRESS(Words, alias)                                                                                              \
     ADDRESS(Words, tree)                                                                                               \
-    ADDRESS(Words, clusters) /* of lists: VK_CLUSTER_HEAD words a half, then blocks */                                 \
     ADDRESS(Floats, environment)                                                                                       \
     ADDRESS(Floats, backdrop)                                                                                          \
     ADDRESS(Words, environment_slots)                                                                                  \
@@ -74,18 +60,15 @@ struct vk_instance_record {
     ADDRESS(Words, answers)                                                                                            \
     ADDRESS(HitBlocks, hits)                                                                                           \
     ADDRESS(SampleRows, samples)                                                                                       \
-    ADDRESS(Words, scratch)      /* of a band of the picture */                                                        \
-    ADDRESS(Words, tile_scratch) /* VK_TILE_WORDS a tile of the band */                                                \
-    ADDRESS(Words, lists)        /* VK_LIST_WORDS a tile of the picture */                                             \
-    ADDRESS(Words, ray_data)     /* VK_RAY_DATA_WORDS a pixel of the band: word by word */                             \
+    ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
     ADDRESS(Words, counters)                                                                                           \
     WORD(uint32_t, light_count)                                                                                        \
     WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
     WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
-    WORD(uint32_t, slots)     /* pixels of the band: rays of one slot */                                               \
-    WORD(uint32_t, tiles_x)   /* tiles of 16 x 16 pixels in a row */                                                   \
-    WORD(uint32_t, draws)     /* candidates a pixel */                                                                 \
+    WORD(uint32_t, slots)     /* pixels of the picture's blocks: rays of one slot */                                   \
+    WORD(uint32_t, blocks_y)                                                                                           \
+    WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
     WORD(uint32_t, subsets)                                                                                            \
     WORD(uint32_t, alias_count)                                                                                        \
     WORD(uint32_t, tree_root)                                                                                          \

@@ -13,7 +13,6 @@ typedef struct scheduling {
     bool no_memory;
     vk_step lost; /* stands in where memory is refused */
     noc_pass pass;
-    uint32_t first_row, rows; /* the band */
 } scheduling;
 
 static uint32_t set_bit(int set) { return R(SET) << set; }
@@ -23,8 +22,6 @@ static vk_step *add(scheduling *s, vk_shader shader, uint32_t reads, uint32_t wr
                      .reads = reads,
                      .writes = writes,
                      .slots = 1,
-                     .first_row = s->first_row,
-                     .rows = s->rows,
                      .source = s->stage ? s->stage->source : 0,
                      .target = s->stage ? s->stage->target : 0,
                      .pass = s->pass };
@@ -118,11 +115,11 @@ static size_t reference_words(const vk_facts *f) {
     return (f->lights + REFERENCE_CHUNK - 1) / REFERENCE_CHUNK + 1 + 2 * (size_t)f->constants->rays;
 }
 
-/* Rows of blocks that are done at once, so that what their pixels need, so many words each, stays bounded. */
+/* Rows of blocks that are done at once, so that scratch stays bounded. */
 static uint32_t band_rows(const vk_facts *f, size_t words) {
-    enum { BAND_BYTES = 64 << 20 };
+    enum { SCRATCH_BYTES = 64 << 20 };
     size_t row = (size_t)f->blocks_x * BLOCK * words * 4;
-    return (uint32_t)NOC_CLAMP(BAND_BYTES / row, (size_t)1, (size_t)f->blocks_y);
+    return (uint32_t)NOC_CLAMP(SCRATCH_BYTES / row, (size_t)1, (size_t)f->blocks_y);
 }
 
 static void reference_rays(scheduling *s, uint32_t first, uint32_t first_row, uint32_t rows) {
@@ -174,23 +171,6 @@ static void sky(scheduling *s) {
     }
 }
 
-/* Words that a pixel takes in a stage with lists: up to 16 rays and their answers, what is known of them, its share of
- * its tile's scratch. */
-enum { LIST_PIXEL_WORDS = 16 * 7 + VK_RAY_DATA_WORDS + VK_TILE_WORDS / 256 + 1 };
-
-/* Rows of blocks of a stage's bands: whole tiles where it has lists, else all. */
-static uint32_t stage_rows(const noc_stage *stage, const vk_facts *f) {
-    uint32_t rows = band_rows(f, LIST_PIXEL_WORDS);
-    if (!noc_stage_has(stage, NOC_PASS_BUILD_LIST) || rows == f->blocks_y)
-        return f->blocks_y;
-    return NOC_MAX(rows / 4 * 4, 4u);
-}
-
-static bool has_its_lights(noc_pass pass, const vk_facts *facts) {
-    return facts->lights || pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY ||
-           pass == NOC_PASS_HEADLIGHT;
-}
-
 bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps) {
     static void (*const passes[NOC_PASS_COUNT])(scheduling *) = {
         [NOC_PASS_PRIMARY] = primary,
@@ -207,33 +187,35 @@ bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_fact
         [NOC_PASS_SKY] = sky,
     };
     scheduling s = { .plan = plan, .stage = stage, .facts = facts, .steps = steps };
-    uint32_t rows = stage_rows(stage, facts);
-    for (uint32_t row = 0; row < facts->blocks_y; row += rows) {
-        s.first_row = row;
-        s.rows = NOC_MIN(rows, facts->blocks_y - row);
-        for (int i = 0; i < stage->count; i++) {
-            s.pass = stage->passes[i];
-            if (passes[s.pass] && has_its_lights(s.pass, facts))
-                passes[s.pass](&s);
-        }
+    for (int i = 0; i < stage->count; i++) {
+        s.pass = stage->passes[i];
+        bool without_lights = s.pass == NOC_PASS_PRIMARY || s.pass == NOC_PASS_EMITTERS || s.pass == NOC_PASS_SKY ||
+                              s.pass == NOC_PASS_HEADLIGHT;
+        if (passes[s.pass] && (facts->lights || without_lights))
+            passes[s.pass](&s);
     }
     return !s.no_memory;
 }
 
 bool noc_vk_schedule_mean(const vk_facts *facts, vk_steps *steps) {
-    scheduling s = { .facts = facts, .steps = steps, .pass = NOC_PASS_COUNT, .rows = facts->blocks_y };
+    scheduling s = { .facts = facts, .steps = steps, .pass = NOC_PASS_COUNT };
     add(&s, VK_SHADER_mean, R(COLOUR) | R(SURFACES) | R(PICTURE) | R(COVERAGE), R(PICTURE) | R(COVERAGE));
     return !s.no_memory;
 }
 
-void noc_vk_find_need(const noc_stage *stage, const vk_facts *f, const vk_steps *steps, vk_need *need) {
-    size_t row = (size_t)f->blocks_x * BLOCK, words = reference_words(f);
+int noc_vk_slots(const vk_steps *steps) {
+    int most = 1;
     for (size_t i = 0; i < steps->len; i++)
-        need->rays = NOC_MAX(need->rays, row * steps->data[i].rows * (size_t)steps->data[i].slots);
-    if (noc_stage_has(stage, NOC_PASS_SHADE_ALL))
-        need->scratch = NOC_MAX(need->scratch, band_rows(f, words) * row * words * 4);
-    if (noc_stage_has(stage, NOC_PASS_BUILD_LIST))
-        need->band = NOC_MAX(need->band, stage_rows(stage, f) * row);
+        most = NOC_MAX(most, steps->data[i].slots);
+    return most;
+}
+
+size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *f) {
+    size_t words = reference_words(f);
+    for (int i = 0; i < plan->count; i++)
+        if (noc_stage_has(&plan->stages[i], NOC_PASS_SHADE_ALL))
+            return (size_t)band_rows(f, words) * f->blocks_x * BLOCK * words * 4;
+    return 0;
 }
 
 void noc_vk_find_wait(vk_hazards *h, vk_step *step) {

@@ -23,16 +23,12 @@ typedef enum vk_resource {
     VK_RESOURCE_HITS,
     VK_RESOURCE_SAMPLES,
     VK_RESOURCE_SCRATCH,
-    VK_RESOURCE_TILE_SCRATCH,
-    VK_RESOURCE_LISTS,
-    VK_RESOURCE_SHARED,
     VK_RESOURCE_COUNT
 } vk_resource;
 
 typedef enum vk_domain {
     VK_DOMAIN_PIXELS,
     VK_DOMAIN_RAYS,    /* of `slots` rays a pixel */
-    VK_DOMAIN_TILES,   /* of 16 x 16 pixels: a work group each */
     VK_DOMAIN_SUBSETS, /* of candidates that blocks share: a work group each */
 } vk_domain;
 
@@ -44,7 +40,7 @@ typedef struct vk_step {
     int source, target; /* sets of reservoirs */
     uint32_t dimension; /* of reuse */
     uint32_t first;
-    uint32_t first_row, rows; /* of blocks: its band of the picture */
+    uint32_t first_row, rows; /* of blocks: its band of the picture; rows 0: all */
     bool past;                /* rays are traced against the scene of the frame before */
     bool wait;                /* a barrier comes before it */
     noc_pass pass;
@@ -66,15 +62,9 @@ typedef NOC_ARRAY(vk_step) vk_steps;
 bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps);
 /* Appends those that add the frame to the picture. */
 bool noc_vk_schedule_mean(const vk_facts *facts, vk_steps *steps);
-/* What the steps need room for. */
-typedef struct vk_need {
-    size_t rays;    /* traced at once */
-    size_t scratch; /* bytes of the reference's */
-    size_t band;    /* pixels of the largest band of a stage with lists; 0: there is none */
-} vk_need;
-
-/* Takes in the need of a stage's steps. */
-void noc_vk_find_need(const noc_stage *stage, const vk_facts *facts, const vk_steps *steps, vk_need *need);
+/* Rays a pixel that any step traces at once, and bytes of scratch that a band takes. */
+int noc_vk_slots(const vk_steps *steps);
+size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *facts);
 
 /* What was read and written since the last barrier. */
 typedef struct vk_hazards {

@@ -84,40 +84,31 @@ noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
     return status;
 }
 
-/* Room for `bytes` bytes in a buffer of the view, whose contents no frame needs of another. */
-static noc_status grow(vk_view *v, vk_buffer *b, size_t bytes, const char *what) {
-    if (b->bytes >= bytes)
-        return NOC_OK;
-    noc_status status = noc_vk_finish_flights(v);
-    v->b.bytes -= b->bytes;
-    noc_vk_free_buffer(v->device, b);
-    if (status == NOC_OK)
-        status = noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, what, b);
-    v->b.bytes += b->bytes;
-    return status;
-}
-
-static noc_status fit_lists(vk_view *v, size_t band) {
-    size_t tiles = (size_t)((v->b.blocks_x + 3) / 4) * ((v->b.blocks_y + 3) / 4);
-    size_t of_band = (size_t)((v->b.blocks_x + 3) / 4) * (band / ((size_t)v->b.blocks_x * BLOCK * 4) + 1);
-    noc_status status = grow(v, &v->lists, tiles * VK_LIST_WORDS * 4, "light lists");
-    if (status == NOC_OK)
-        status = grow(v, &v->tile_scratch, of_band * VK_TILE_WORDS * 4, "light lists");
-    return status == NOC_OK ? grow(v, &v->ray_data, band * VK_RAY_DATA_WORDS * 4, "shared rays") : status;
-}
-
-noc_status noc_vk_view_fit(vk_view *v, const vk_need *need) {
+noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch) {
     vk_picture *b = &v->b;
-    if (need->rays > v->device->rays.maxRayDispatchInvocationCount)
-        return noc_error(v->log, NOC_ERR_MEMORY, "vulkan: %zu rays at once for a picture of %d x %d are too many",
-                         need->rays, b->width, b->height);
-    noc_status status = grow(v, &b->rays, need->rays * RAY_BYTES, "rays");
-    if (status == NOC_OK)
-        status = grow(v, &b->answers, need->rays * ANSWER_BYTES, "rays");
-    if (status == NOC_OK && need->scratch)
-        status = grow(v, &v->scratch, need->scratch, "scratch of a frame");
-    if (status == NOC_OK && need->band)
-        status = fit_lists(v, need->band);
+    noc_status status = NOC_OK;
+    if ((uint64_t)slots_of(b) * (uint64_t)slots > v->device->rays.maxRayDispatchInvocationCount)
+        return noc_error(v->log, NOC_ERR_MEMORY, "vulkan: %d rays a pixel of %d x %d are more than the device takes",
+                         slots, b->width, b->height);
+    if (b->slots < slots) {
+        status = noc_vk_finish_flights(v);
+        noc_vk_free_buffer(v->device, &b->rays);
+        noc_vk_free_buffer(v->device, &b->answers);
+        b->bytes -= (size_t)b->slots * slots_of(b) * (RAY_BYTES + ANSWER_BYTES);
+        b->slots = 0;
+        if (status == NOC_OK)
+            status = make(v, (size_t)slots * RAY_BYTES, &b->rays);
+        if (status == NOC_OK)
+            status = make(v, (size_t)slots * ANSWER_BYTES, &b->answers);
+        if (status == NOC_OK)
+            b->slots = slots;
+    }
+    if (status == NOC_OK && v->scratch.bytes < scratch) {
+        status = noc_vk_finish_flights(v);
+        noc_vk_free_buffer(v->device, &v->scratch);
+        if (status == NOC_OK)
+            status = noc_vk_make_buffer(v->device, scratch, 0, VK_PLACE_DEVICE, "scratch of a frame", &v->scratch);
+    }
     if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)
         status = make(v, 4, &b->instance);
     return status;
@@ -209,9 +200,6 @@ static void destroy(vk_view *v) {
     noc_vk_free_buffer(d, &v->samples);
     noc_vk_free_buffer(d, &v->scratch);
     noc_vk_free_buffer(d, &v->given);
-    noc_vk_free_buffer(d, &v->tile_scratch);
-    noc_vk_free_buffer(d, &v->lists);
-    noc_vk_free_buffer(d, &v->ray_data);
     array_free(&v->steps);
     noc_vk_free_buffer(d, &v->counters);
     noc_vk_free_buffer(d, &v->past_lights);

@@ -135,7 +135,7 @@ typedef struct vk_array {
 /* What the tables of candidates on the device were made from. */
 typedef struct vk_sources_key {
     uint64_t commits;
-    const void *alias, *tree, *clusters[NOC_HALVES], *map;
+    const void *alias, *tree, *map;
 } vk_sources_key;
 
 typedef struct vk_world {
@@ -147,7 +147,7 @@ typedef struct vk_world {
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
     vk_array instances, instance_lights, backs;
     vk_array backdrop, environment, environment_slots, environment_sines;
-    vk_array alias, tree, clusters;
+    vk_array alias, tree;
     vk_sources_key drawn_from;
     noc_scene_versions seen; /* that the arrays know */
     bool filled;
@@ -178,11 +178,11 @@ typedef struct vk_flight {
 
 /* Buffers of one picture. */
 typedef struct vk_picture {
-    int width, height, sets;
+    int width, height, sets, slots;
     uint32_t blocks_x, blocks_y;
     vk_buffer surfaces[2], reservoirs[NOC_RESERVOIR_SETS], visible[NOC_RESERVOIR_SETS];
     vk_buffer colour, picture, coverage;
-    vk_buffer rays, answers, hits; /* of as many rays as are traced at once */
+    vk_buffer rays, answers, hits; /* of `slots` rays a pixel */
     vk_buffer instance;            /* that each pixel sees; none: the scene has had none */
     size_t bytes;
 } vk_picture;
@@ -211,8 +211,7 @@ typedef struct vk_view {
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
     vk_buffer samples, scratch, counters, given;
-    vk_buffer tile_scratch, lists, ray_data; /* of lists: of a band, of the picture, of a band */
-    vk_steps steps;                          /* of the stage at work */
+    vk_steps steps; /* of the stage at work */
     vk_buffer past_lights;
     noc_past past;
     noc_light_sources sources;
@@ -303,8 +302,8 @@ noc_status noc_vk_view_create(void *world, void **view);
 void noc_vk_view_destroy(void *view);
 size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
-/* Room for what the steps of a frame need, and for instances where the scene has some. */
-noc_status noc_vk_view_fit(vk_view *v, const vk_need *need);
+/* Room for so many rays a pixel, so much scratch, and for instances where the scene has some. */
+noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch);
 /* Room for the lights of the frame before, where the plan reuses what it made, and whether it can be. */
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */

@@ -250,53 +250,8 @@ static noc_status fill_tree(vk_world *w, const noc_tree *tree) {
     return fill(w, &w->tree, tree->pairs, bytes, 0, bytes, 0, "the light tree");
 }
 
-/* Writes the head of a half of the clusters, whose blocks begin at word `at`; returns where they end. */
-static size_t cluster_head(const noc_clusters *c, size_t at, uint32_t *head) {
-    if (!c || !c->count)
-        return at;
-    head[0] = (uint32_t)c->levels;
-    for (int l = 0; l < c->levels; l++) {
-        head[VK_CLUSTER_NODES + l] = (uint32_t)c->nodes[l];
-        head[VK_CLUSTER_LEVELS + l] = (uint32_t)at;
-        at += (c->nodes[l] + 15) / 16 * (sizeof(noc_cluster_block) / 4);
-    }
-    head[VK_CLUSTER_LIGHTS] = (uint32_t)at;
-    return at + c->count * (sizeof(noc_light_block) / 4);
-}
-
-static noc_status write_clusters(vk_world *w, const noc_clusters *c, const uint32_t *head) {
-    noc_status status = NOC_OK;
-    if (!c || !c->count)
-        return NOC_OK;
-    for (int l = 0; l < c->levels && status == NOC_OK; l++)
-        status = noc_vk_write(w->device, &w->clusters.buffer, 4 * (VkDeviceSize)head[VK_CLUSTER_LEVELS + l],
-                              c->level[l], (c->nodes[l] + 15) / 16 * sizeof(*c->level[l]));
-    if (status == NOC_OK)
-        status = noc_vk_write(w->device, &w->clusters.buffer, 4 * (VkDeviceSize)head[VK_CLUSTER_LIGHTS], c->lights,
-                              c->count * sizeof(*c->lights));
-    return status;
-}
-
-/* Both halves, one after the other: heads, then blocks (records.h). */
-static noc_status fill_clusters(vk_world *w, const noc_clusters *const clusters[NOC_HALVES]) {
-    uint32_t heads[NOC_HALVES][VK_CLUSTER_HEAD] = { { 0 } };
-    size_t words = sizeof(heads) / 4;
-    noc_status status = NOC_OK;
-    for (int half = 0; half < NOC_HALVES; half++)
-        words = cluster_head(clusters[half], words, heads[half]);
-    if (w->clusters.buffer.bytes < 4 * words)
-        status = make_room(w, &w->clusters, 4 * words, 0, "clusters of lights");
-    if (status == NOC_OK)
-        status = noc_vk_write(w->device, &w->clusters.buffer, 0, heads, sizeof(heads));
-    for (int half = 0; half < NOC_HALVES && status == NOC_OK; half++)
-        status = write_clusters(w, clusters[half], heads[half]);
-    return status;
-}
-
 noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map) {
-    const vk_sources_key key = {
-        w->seen.commits, sources->alias, sources->tree, { sources->clusters[0], sources->clusters[1] }, map
-    };
+    const vk_sources_key key = { w->seen.commits, sources->alias, sources->tree, map };
     noc_status status = NOC_OK;
     if (!memcmp(&key, &w->drawn_from, sizeof(key)))
         return NOC_OK;
@@ -304,8 +259,6 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
         status = fill_alias(w, &w->alias, sources->alias);
     if (status == NOC_OK && sources->tree)
         status = fill_tree(w, sources->tree);
-    if (status == NOC_OK && (sources->clusters[0] || sources->clusters[1]))
-        status = fill_clusters(w, sources->clusters);
     if (status == NOC_OK && map)
         status = fill_alias(w, &w->environment_slots, map->texels);
     if (status == NOC_OK && map) {
@@ -348,7 +301,6 @@ void noc_vk_world_destroy(void *world) {
                                  &w->environment_slots,
                                  &w->environment_sines,
                                  &w->alias,
-                                 &w->clusters,
                                  &w->tree };
     noc_light_set_destroy(w->lights_set);
     noc_vk_forget_host_world(w);

@@ -110,7 +110,6 @@ struct place {
     uint block;
     uint lane;
     uint slot;
-    uint ray; /* its number in the band that the dispatch does: rays lie by that */
     uint x;
     uint y;
     bool inside; /* the picture, which need not fill its last blocks */
@@ -123,7 +122,6 @@ place place_at(uint x, uint y) {
     p.block = (y >> 2) * FRAME.blocks_x + (x >> 2);
     p.lane = (y & 3u) * 4u + (x & 3u);
     p.slot = p.block * BLOCK + p.lane;
-    p.ray = p.slot - HERE.first_row * FRAME.blocks_x * BLOCK;
     p.inside = x < FRAME.width && y < FRAME.height;
     return p;
 }
@@ -189,26 +187,15 @@ void count_one(uint kind, uint at) { atomicAdd(HERE.counters.at[kind * VK_COUNTE
 
 /* ---- rays ---- */
 
-/* Where ray i of a pixel is. */
-uint ray_slot(place p, uint i) { return i * HERE.slots + p.ray; }
-uint ray_answer(place p, uint i) { return HERE.answers.at[ray_slot(p, i)]; }
-vec3 way_of_ray(uint slot) {
-    uint b = slot / BLOCK, l = slot % BLOCK;
-    return vec3(HERE.rays.at[b].d[0][l], HERE.rays.at[b].d[1][l], HERE.rays.at[b].d[2][l]);
-}
-vec3 origin_of_ray(uint slot) {
-    uint b = slot / BLOCK, l = slot % BLOCK;
-    return vec3(HERE.rays.at[b].o[0][l], HERE.rays.at[b].o[1][l], HERE.rays.at[b].o[2][l]);
-}
-
 /* Segment i of a pixel, o to o + d; without `on` there is none. */
 void ray_put(place p, uint i, bool on, vec3 o, vec3 d) {
-    uint slot = ray_slot(p, i);
+    uint slot = i * HERE.slots + p.slot;
     HERE.answers.at[slot] = on ? VK_ANSWER_WANTED : VK_ANSWER_NONE;
     if (!on)
         return;
+    uint block = slot / BLOCK;
     for (int k = 0; k < 3; k++) {
-        HERE.rays.at[slot / BLOCK].o[k][p.lane] = o[k];
-        HERE.rays.at[slot / BLOCK].d[k][p.lane] = d[k];
+        HERE.rays.at[block].o[k][p.lane] = o[k];
+        HERE.rays.at[block].d[k][p.lane] = d[k];
     }
 }

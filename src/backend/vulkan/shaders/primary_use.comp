@@ -31,7 +31,7 @@ void main() {
     if (!in_grid())
         return;
     place p = my_place();
-    uint b = p.ray / BLOCK, l = p.lane, number = HERE.hits.at[b].triangle[l];
+    uint b = p.slot / BLOCK, l = p.lane, number = HERE.hits.at[b].triangle[l];
     uint instance = NO_INSTANCE, texel = 0u;
     receiver r = receiver_none();
     if (p.inside && number != NO_HIT) {
@@ -46,7 +46,7 @@ void main() {
         h.u = HERE.hits.at[b].u[l];
         h.v = HERE.hits.at[b].v[l];
         h.far_ = HERE.hits.at[b].t[l];
-        h.d = way_of_ray(p.ray);
+        h.d = vec3(HERE.rays.at[b].d[0][l], HERE.rays.at[b].d[1][l], HERE.rays.at[b].d[2][l]);
         h.material = HERE.triangle_material.at[triangle];
         h.light = HERE.triangle_light.at[triangle];
         instance = e.instance;

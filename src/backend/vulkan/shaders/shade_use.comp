@@ -13,7 +13,7 @@ void main() {
     reservoir q = reservoir_at(HERE.target, p.block, p.lane);
     bool on = q.w > 0.0;
     if (on && (FRAME.flags & FRAME_FINAL_RAY) != 0u)
-        on = ray_answer(p, 0u) != VK_ANSWER_WANTED;
+        on = HERE.answers.at[p.slot] != VK_ANSWER_WANTED;
     if (!on)
         return;
     vec3 light = sample_shade(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), q, light_load(q.light));

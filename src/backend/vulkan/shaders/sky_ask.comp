@@ -15,7 +15,7 @@ void main() {
     vec3 c = colour_at(HERE.colour, p);
     if (!surface && p.inside && HERE.first == 0u)
         colour_put(HERE.colour, p, add_colour(c, sky_behind(p.x, p.y), p.slot));
-    uint turns = HERE.first == 0u ? sky_turns(c) : ray_answer(p, 0u) >> 8;
+    uint turns = HERE.first == 0u ? sky_turns(c) : HERE.answers.at[p.slot] >> 8;
     bool on = surface && HERE.sky_turns > HERE.first && HERE.first < turns;
     segment s;
     s.o = s.d = vec3(0.0);
@@ -23,5 +23,5 @@ void main() {
         s = sky_ray(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), key_at(p, 0u), FRAME.index * turns + HERE.first,
                     HERE.ray_offset);
     ray_put(p, 0u, on, s.o, s.d);
-    HERE.answers.at[ray_slot(p, 0u)] |= turns << 8;
+    HERE.answers.at[p.slot] |= turns << 8;
 }

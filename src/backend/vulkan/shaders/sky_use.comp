@@ -10,10 +10,11 @@ void main() {
     if (!in_grid())
         return;
     place p = my_place();
-    uint answer = ray_answer(p, 0u);
+    uint answer = HERE.answers.at[p.slot];
     if ((answer & 3u) != VK_ANSWER_CLEAR)
         return;
-    vec3 way = way_of_ray(p.ray);
+    vec3 way = vec3(HERE.rays.at[p.block].d[0][p.lane], HERE.rays.at[p.block].d[1][p.lane],
+                    HERE.rays.at[p.block].d[2][p.lane]);
     EXACT float share = 1.0 / float(answer >> 8);
     vec3 light = sky_shade(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), way, share);
     colour_put(HERE.colour, p, add_colour(colour_at(HERE.colour, p), light, p.slot));
