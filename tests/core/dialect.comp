@@ -24,16 +24,10 @@ uint lane_places(uint first) { return first; }
 #define ITEM_COUNT items
 #include "dialect_kernel.h"
 
-/* Lists are a shader of their own: llvmpipe gives an invocation 65,535 rounds for all its loops together, and then
- * leaves each loop after its first. */
+/* llvmpipe gives an invocation 65,535 rounds for all its loops together, and then leaves each loop after its first:
+ * lists are a shader of their own for that, too. */
 void main() {
     uint item = gl_GlobalInvocationID.x;
-    if (item < items) {
-#ifdef DIALECT_LISTS
-        dialect_tile_lists(item);
-#else
-        dialect_item(item);
-        dialect_tile(item);
-#endif
-    }
+    if (item < items)
+        DIALECT_PART(item);
 }

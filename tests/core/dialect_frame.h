@@ -249,7 +249,7 @@ FN void emitters(CTX u32 item, u32 key) {
     put_u32(PASS item, FRAME_FIRST + 90, flag_of(sees_emitter(id)));
 }
 
-FN void frame_item(CTX u32 item, u32 key, surf s) {
+CALL void frame_item(CTX u32 item, u32 key, surf s) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_key = key;
     places(PASS item, key);

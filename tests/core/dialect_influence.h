@@ -18,7 +18,7 @@ FN u32 influence_volume(CTX u32 id) { return shr(id, 1); }
 FN mask influence_seen(CTX u32 volume, influence_region r) { return (volume & KU(3u)) != KU(0u); }
 
 /* Slots 0 to 4: one that is drawn from a list, and what goes for all of a set. */
-FN void influence_draws(CTX u32 item, u32 key, surf s) {
+CALL void influence_draws(CTX u32 item, u32 key, surf s) {
     influence_asked a;
     a.r = influence_point(s.p, s.n);
     a.least = rng(key, KU(3200u)) * K(0.01f);
@@ -271,7 +271,7 @@ FN void dialect_finds(CTX u1 item, influence_rule rule) {
 }
 
 /* Slots 5 to 7: a search; 8, 9: the rule. */
-FN void dialect_volumes(CTX u1 item) {
+CALL void dialect_volumes(CTX u1 item) {
     near_query q;
     q.lo =
         F3(tile_real(item, 0u) * 200.0f - 100.0f, tile_real(item, 1u) * 200.0f - 100.0f, tile_real(item, 2u) * 20.0f);

@@ -188,7 +188,7 @@ FN void put_resv(CTX u32 item, int slot, reservoir r) {
 }
 
 /* Slots 0 to 19. */
-FN void numbers(CTX u32 item, u32 key) {
+CALL void numbers(CTX u32 item, u32 key) {
     u32 bits = rng_bits(key, KU(1000u));
     real t = rng(key, KU(1001u));
     put_u32(PASS item, 0, bits);
@@ -207,7 +207,7 @@ FN void numbers(CTX u32 item, u32 key) {
 }
 
 /* Slots 20 to 54: 7 a kind; 55: a light of any kind. */
-FN void lights(CTX u32 item, u32 key, v3 y, light any) {
+CALL void lights(CTX u32 item, u32 key, v3 y, light any) {
     light l = any;
     real u = rng(key, KU(2000u));
     real v = rng(key, KU(2001u));
@@ -219,7 +219,7 @@ FN void lights(CTX u32 item, u32 key, v3 y, light any) {
 }
 
 /* Slots 163 to 169: a spot that is somewhere between its cones. */
-FN void spots(CTX u32 item, u32 key, v3 y, light any) {
+CALL void spots(CTX u32 item, u32 key, v3 y, light any) {
     light l = any;
     l.kind = KU(LIGHT_SPOT);
     l.a = mul3(unit3(l.a), K(1.7f));
@@ -228,7 +228,7 @@ FN void spots(CTX u32 item, u32 key, v3 y, light any) {
 }
 
 /* Slots 179 to 202: lights of the kinds that have a profile, 7 a kind; what a light shows; a target. */
-FN void profiles(CTX u32 item, u32 key, surf s, light any) {
+CALL void profiles(CTX u32 item, u32 key, surf s, light any) {
     light l = any;
     real u = rng(key, KU(2008u));
     real v = rng(key, KU(2009u));
@@ -245,7 +245,7 @@ FN void profiles(CTX u32 item, u32 key, surf s, light any) {
 }
 
 /* Slots 141 to 161: flat lights sampled by solid angle, 7 a kind; 162: turn_of. */
-FN void close_lights(CTX u32 item, u32 key, v3 y, light any) {
+CALL void close_lights(CTX u32 item, u32 key, v3 y, light any) {
     light l = any;
     l.radius = K(1e6f);
     for (int kind = 0; kind < 3; kind++) {
@@ -256,7 +256,7 @@ FN void close_lights(CTX u32 item, u32 key, v3 y, light any) {
 }
 
 /* Slots 56 to 70. */
-FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
+CALL void surfaces(CTX u32 item, u32 key, surf s, light any) {
     v3 wi = unit3(any_v3(key, KU(2010u)));
     put_v3(PASS item, 56, reflect(s, wi));
     surf d = s;
@@ -281,7 +281,7 @@ FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
 }
 
 /* Slots 71 to 95. */
-FN void reservoirs(CTX u32 item, u32 key, surf s) {
+CALL void reservoirs(CTX u32 item, u32 key, surf s) {
     reservoir one = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 1);
     reservoir r = ris_uniform(PASS s, key + KU(1u), KU(KERNEL_LIGHTS), 16);
     put_resv(PASS item, 71, one);
@@ -295,7 +295,7 @@ FN void reservoirs(CTX u32 item, u32 key, surf s) {
 }
 
 /* Slots 96 to 103. */
-FN void reuse(CTX u32 item, u32 key) {
+CALL void reuse(CTX u32 item, u32 key) {
     real p_i = rng(key, KU(3010u));
     real p_q = max_(rng(key, KU(3011u)) * K(2.0f) - K(1.0f), K(0.0f));
     real m_n = rng(key, KU(3012u)) * K(100.0f);
@@ -312,7 +312,7 @@ FN void reuse(CTX u32 item, u32 key) {
 }
 
 /* Slots 104 to 125. */
-FN void rays(CTX u32 item, u32 key, surf s, light any) {
+CALL void rays(CTX u32 item, u32 key, surf s, light any) {
     segment g = shadow_segment(s.p, s.n, any, rng(key, KU(3020u)), rng(key, KU(3021u)), K(1e-4f));
     put_v3(PASS item, 104, g.o);
     put_v3(PASS item, 107, g.d);
@@ -329,7 +329,7 @@ FN void rays(CTX u32 item, u32 key, surf s, light any) {
 }
 
 /* Slots 126 to 140. */
-FN void pickers(CTX u32 item, u32 key, surf s) {
+CALL void pickers(CTX u32 item, u32 key, surf s) {
     u32 bits = rng_bits(key, KU(3060u));
     pick a = alias_draw(PASS KU(KERNEL_LIGHTS), bits, rng(key, KU(3061u)));
     put_u32(PASS item, 126, a.light);
@@ -356,7 +356,7 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
 }
 
 /* Slots 170 to 178. */
-FN void picked(CTX u32 item, u32 key, surf s) {
+CALL void picked(CTX u32 item, u32 key, surf s) {
     pick a = alias_draw(PASS KU(KERNEL_LIGHTS), rng_bits(key, KU(3102u)), rng(key, KU(3103u)));
     put_u32(PASS item, 170, a.light);
     put_real(PASS item, 171, a.inverse);
@@ -380,7 +380,8 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 #include "dialect_textures.h"
 #include "dialect_primary.h"
 
-FN void dialect_item(CTX u32 item) {
+/* Parts of an item. A shader has one of them: the time that drivers compile for grows faster than the shader. */
+CALL void dialect_lights(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
     surf s = any_surf(hash_u32(key + KU(1u)));
     light any = any_light(hash_u32(key + KU(2u)));
@@ -390,17 +391,38 @@ FN void dialect_item(CTX u32 item) {
     spots(PASS item, key, s.p, any);
     profiles(PASS item, key, s, any);
     surfaces(PASS item, key, s, any);
+    rays(PASS item, key, s, any);
+}
+
+CALL void dialect_reservoirs(CTX u32 item) {
+    u32 key = rng_key(KU(5u), item, KU(9u));
+    surf s = any_surf(hash_u32(key + KU(1u)));
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);
-    rays(PASS item, key, s, any);
     pickers(PASS item, key, s);
     picked(PASS item, key, s);
-    frame_item(PASS item, key, s);
+    presampling(PASS item, key, s);
+}
+
+CALL void dialect_frames(CTX u32 item) {
+    u32 key = rng_key(KU(5u), item, KU(9u));
+    frame_item(PASS item, key, any_surf(hash_u32(key + KU(1u))));
+    primaries(PASS item, key);
+}
+
+CALL void dialect_draws(CTX u32 item) {
+    u32 key = rng_key(KU(5u), item, KU(9u));
+    surf s = any_surf(hash_u32(key + KU(1u)));
     influence_draws(PASS item, key, s);
     lists_item(PASS item, key, s);
-    presampling(PASS item, key, s);
     textures(PASS item, key);
-    primaries(PASS item, key);
+}
+
+FN void dialect_item(CTX u32 item) {
+    dialect_lights(PASS item);
+    dialect_reservoirs(PASS item);
+    dialect_frames(PASS item);
+    dialect_draws(PASS item);
 }
 
 FN void dialect_tile(CTX u1 item) {

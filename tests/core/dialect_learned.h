@@ -17,7 +17,7 @@ FN1 cell_key dialect_cell(CTX u1 item, u1 i) {
 }
 
 /* Slots 0 to 4: keys; 5 to 11: the table after observations from more cells, of more lights, than it has room for. */
-FN void dialect_cells(CTX u1 item) {
+CALL void dialect_cells(CTX u1 item) {
     cell_key k = dialect_cell(PASS item, 0u);
     u1 hash = 0u;
     u1 known = 0u;

@@ -381,7 +381,7 @@ FN void brief_pixels(CTX u32 item, u32 key) {
     put_real(PASS item, LISTS_FIRST + 34, patch_gloss(t, cone_between(patch_bound(t), lights.bound)));
 }
 
-FN void lists_item(CTX u32 item, u32 key, surf s) {
+CALL void lists_item(CTX u32 item, u32 key, surf s) {
     list_pixels(PASS item, key, s);
     brief_pixels(PASS item, key);
 }
@@ -525,7 +525,7 @@ FN1 void tile_list(CTX u1 item, f3 eye) {
     put_f1(PASS item, LISTS_FIRST + 77, last);
 }
 
-FN void lists_tile(CTX u1 item) {
+CALL void lists_tile(CTX u1 item) {
     dialect_number = item;
     f3 eye = F3(0.0f, 0.0f, tile_real(item, 99u));
     u1 patches = tile_patches(PASS item, eye);

@@ -36,7 +36,7 @@ FN real weighed_at(CTX u32 i) {
 }
 
 /* Slots 0 to 31. */
-FN void presampling(CTX u32 item, u32 key, surf s) {
+CALL void presampling(CTX u32 item, u32 key, surf s) {
     dialect_shared = hash_u32(key + KU(6001u));
     presample e = presample_of(any_light(dialect_shared), rng(key, KU(6002u)), rng(key, KU(6003u)));
     put_v3(PASS item, PRESAMPLED_FIRST, e.x);

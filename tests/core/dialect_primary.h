@@ -32,7 +32,7 @@ FN placement any_placement(u32 key) {
 }
 
 /* Slots 0 to 21. */
-FN void primaries(CTX u32 item, u32 key) {
+CALL void primaries(CTX u32 item, u32 key) {
     ray_hit h = any_hit(key);
     placement m = any_placement(key);
     mask placed = rng(key, KU(5070u)) < K(0.5f);

@@ -18,7 +18,7 @@ FN u32 texel_load(CTX u32 place) {
 #include "core/texture.h"
 
 /* Slots 0 to 16. */
-FN void textures(CTX u32 item, u32 key) {
+CALL void textures(CTX u32 item, u32 key) {
     u32 place = scale_u32(rng_bits(key, KU(4900u)), KU(64u)) * KU(TEXTURE_HEAD);
     corners t;
     t.a = any_v3(key, KU(4910u));

@@ -16,8 +16,12 @@ void dialect_run_16(uint32_t *out, uint32_t items);
 #endif
 
 #if defined(HAVE_VULKAN)
-#include "dialect_lists_spv.h"
-#include "dialect_spv.h"
+#include "dialect_draws.h"
+#include "dialect_frames.h"
+#include "dialect_lights.h"
+#include "dialect_reservoirs.h"
+#include "dialect_tile.h"
+#include "dialect_tile_lists.h"
 #include "vulkan_run.h"
 #endif
 
@@ -370,6 +374,14 @@ static void expect_close(const char *what, const uint32_t *have, const uint32_t 
     assert_true(share < 1e-3);
 }
 
+#define PART(code)                                                                                                     \
+    { code, sizeof(code) }
+static const struct {
+    const uint32_t *spirv;
+    size_t bytes;
+} parts[] = { PART(dialect_lights_spv), PART(dialect_reservoirs_spv), PART(dialect_frames_spv),
+              PART(dialect_draws_spv),  PART(dialect_tile_spv),       PART(dialect_tile_lists_spv) };
+
 /* Each writes its slots and keeps the others. */
 static bool dialect_shader(vulkan_run *gpu, const uint32_t *spirv, size_t bytes, uint32_t *have) {
     uint32_t push = ITEMS;
@@ -385,8 +397,9 @@ static void test_glsl(void **state) {
     uint32_t number = 0;
     for (; vulkan_open(&gpu, number); number++) {
         print_message("# %s%s\n", gpu.device, gpu.validated ? "" : " (without the validation layer)");
-        bool ok = dialect_shader(&gpu, dialect_spv, sizeof(dialect_spv), have) &&
-                  dialect_shader(&gpu, dialect_lists_spv, sizeof(dialect_lists_spv), have);
+        bool ok = true;
+        for (size_t i = 0; ok && i < sizeof(parts) / sizeof(*parts); i++)
+            ok = dialect_shader(&gpu, parts[i].spirv, parts[i].bytes, have);
         if (!ok)
             print_message("# %s\n", gpu.why);
         vulkan_close(&gpu);
