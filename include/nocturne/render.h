@@ -347,7 +347,9 @@ typedef struct noc_frame_stats {
     const char *path;                    /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
-NOC_API void noc_view_get_stats(const noc_view *view, noc_frame_stats *stats);
+/* Waits for the last frame where it is still being made (Vulkan has two in flight); else figures are those of the last
+ * one that was finished. The view's thread calls it. */
+NOC_API void noc_view_get_stats(noc_view *view, noc_frame_stats *stats);
 
 /* The structure that the last frame's light candidates were drawn from. What does not apply to it is 0. */
 typedef struct noc_light_stats {

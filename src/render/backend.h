@@ -93,6 +93,8 @@ typedef struct noc_backend {
     void (*run)(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *view, noc_frame_stats *stats);
+    /* Waits until the last frame is finished; returns true if it was not yet. NULL: frames are when they return. */
+    bool (*finish)(void *view);
     /* Of the structure that the last frame drew candidates from, though other views' frames may have followed. */
     void (*light_stats)(void *view, noc_light_stats *stats);
     /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any.

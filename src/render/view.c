@@ -120,13 +120,19 @@ static void remember(noc_view *v, const noc_frame *frame) {
     };
 }
 
+static void note_times(noc_view *v) {
+    v->stats.wall_seconds = noc_wall_seconds() - v->began_wall;
+    v->stats.cpu_seconds = noc_cpu_seconds() - v->began_cpu;
+}
+
 static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
                              const noc_progress *progress) {
     noc_plan plan;
     noc_frame frame;
-    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
     bool map = v->scene->environment != NULL;
     v->last.there = false;
+    v->began_wall = noc_wall_seconds();
+    v->began_cpu = noc_cpu_seconds();
     noc_plan_make(p, map, -1, false, &plan);
     noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
@@ -150,9 +156,8 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     }
     v->backend->stats(v->state, &stats);
     stats.frames = v->history.accumulated;
-    stats.wall_seconds = noc_wall_seconds() - wall;
-    stats.cpu_seconds = noc_cpu_seconds() - cpu;
     v->stats = stats;
+    note_times(v);
     return status;
 }
 
@@ -245,9 +250,16 @@ void noc_view_rows(noc_view *v, const noc_frame_rows *rows) {
     noc_scene_unlock_read(v->scene);
 }
 
-void noc_view_get_stats(const noc_view *v, noc_frame_stats *stats) {
-    if (stats)
-        *stats = v ? v->stats : (noc_frame_stats){ 0 };
+void noc_view_get_stats(noc_view *v, noc_frame_stats *stats) {
+    if (!stats)
+        return;
+    if (v && v->backend->finish && v->backend->finish(v->state)) {
+        noc_frame_stats of_last = { .dropped = v->stats.dropped, .frames = v->stats.frames };
+        v->backend->stats(v->state, &of_last);
+        v->stats = of_last;
+        note_times(v);
+    }
+    *stats = v ? v->stats : (noc_frame_stats){ 0 };
 }
 
 void noc_view_light_stats(const noc_view *v, noc_light_stats *stats) {

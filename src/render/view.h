@@ -26,6 +26,7 @@ struct noc_view {
     noc_history history;
     int width, height, sets; /* of the backend's buffers; 0: none */
     noc_frame_stats stats;
+    double began_wall, began_cpu; /* s, of the last frame */
     noc_last_frame last;
 };
 

@@ -186,6 +186,7 @@ const noc_backend noc_backend_vulkan = {
     .rows = noc_vk_rows,
     .run = noc_vk_run,
     .stats = noc_vk_stats,
+    .finish = noc_vk_finish,
     .light_stats = noc_vk_light_stats,
     .influence = noc_vk_influence,
     .cast = noc_vk_cast,

@@ -16,18 +16,19 @@ static void take_times(vk_view *v, vk_flight *f) {
         return;
     for (int i = 0; i < f->times_count; i++)
         if (f->timed[i] < NOC_PASS_COUNT)
-            v->stats.pass_seconds[f->timed[i]] +=
+            f->found.pass_seconds[f->timed[i]] +=
                 (double)((times[i + 1] - times[i]) & v->device->tick_mask) * v->device->tick;
 }
 
-static void take_counts(vk_view *v, const vk_flight *f) {
+static void take_counts(vk_view *v, vk_flight *f) {
     const uint32_t(*counts)[VK_COUNTERS] = f->counts.mapped;
     uint64_t sums[VK_COUNT_KINDS] = { 0 };
     for (int kind = 0; kind < VK_COUNT_KINDS; kind++)
         for (int i = 0; i < VK_COUNTERS; i++)
             sums[kind] += counts[kind][i];
-    v->stats.rays_shadow += sums[VK_COUNT_RAYS];
-    v->stats.dropped += sums[VK_COUNT_DROPPED];
+    f->found.rays_shadow = sums[VK_COUNT_RAYS];
+    f->found.dropped = v->stats.dropped + sums[VK_COUNT_DROPPED];
+    v->stats = f->found;
 }
 
 /* Waits for a frame, and adds up what it counted. */
@@ -299,7 +300,7 @@ static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
 
 /* What the frame needs of the world and of the view, before anything is recorded. */
 static noc_status prepare(vk_view *v, const noc_frame *frame) {
-    noc_status status = refuse(v, frame);
+    noc_status status = v->device->lost ? NOC_ERR_UNSUPPORTED : refuse(v, frame); /* its loss was reported */
     if (status == NOC_OK)
         status = finish(v, &v->flights[v->flight]);
     if (status == NOC_OK)
@@ -332,6 +333,10 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
         return noc_vk_failed(v->device, result, "recording a frame");
     memcpy(f->constants.mapped, &frame->constants, sizeof(frame->constants));
     f->steps = 0;
+    f->found =
+        (noc_frame_stats){ .rays_primary = frame->receivers || !noc_stage_has(&frame->plan->stages[0], NOC_PASS_PRIMARY)
+                                               ? 0
+                                               : (uint64_t)v->b.width * (uint64_t)v->b.height };
     v->hazards = (vk_hazards){ 0 };
     vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
     noc_vk_barrier(f->commands);
@@ -401,11 +406,8 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
         noc_vk_schedule_mean(&facts, &v->steps) ? record(v, frame, &v->steps) : noc_no_memory(v->log, "render");
     if (status == NOC_OK)
         status = submit(v);
-    if (status == NOC_OK) {
+    if (status == NOC_OK)
         v->coverage_frames = frame->accumulated + 1;
-        v->stats.rays_primary +=
-            noc_stage_has(&frame->plan->stages[0], NOC_PASS_PRIMARY) ? (uint64_t)v->b.width * (uint64_t)v->b.height : 0;
-    }
     return drop(v, status);
 }
 
@@ -419,6 +421,19 @@ void noc_vk_light_stats(void *view, noc_light_stats *out) {
     out->bytes = noc_light_set_bytes(v->world->lights_set, v->drawn);
 }
 
+bool noc_vk_finish(void *view) {
+    vk_view *v = view;
+    bool pending = false;
+    for (int i = 0; i < VK_FRAMES; i++)
+        pending = pending || v->flights[i].pending;
+    if (!pending)
+        return false;
+    pthread_mutex_lock(&v->device->lock);
+    noc_vk_finish_flights(v);
+    pthread_mutex_unlock(&v->device->lock);
+    return true;
+}
+
 void noc_vk_stats(void *view, noc_frame_stats *out) {
     vk_view *v = view;
     const vk_device *d = v->device;
@@ -427,7 +442,7 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->rays_primary += v->stats.rays_primary;
     out->rays_shadow += v->stats.rays_shadow;
     out->dropped += v->stats.dropped;
-    v->stats = (noc_frame_stats){ 0 };
+    v->stats.dropped = 0;
     out->build_seconds = v->world->build_seconds;
     out->picture_bytes = v->b.bytes;
     out->structure_bytes = noc_vk_structure_bytes(v->world);

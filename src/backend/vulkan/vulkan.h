@@ -173,6 +173,7 @@ typedef struct vk_flight {
     int steps;
     noc_pass timed[VK_STEPS]; /* the pass that ends with each timestamp but the first */
     int times_count;
+    noc_frame_stats found; /* pass_seconds and rays so far */
     bool pending;
 } vk_flight;
 
@@ -220,7 +221,7 @@ typedef struct vk_view {
     noc_candidates drawn; /* from that */
     uint32_t subsets;
     uint64_t coverage_frames; /* of the mean */
-    noc_frame_stats stats;    /* of finished frames since they were last asked for */
+    noc_frame_stats stats;    /* of the last finished frame; dropped: of all since it was last asked for */
     bool recording;           /* rays are kept */
     NOC_ARRAY(vk_kept_rays) kept;
     const vk_answerer *answerer; /* NULL: the device traces */
@@ -315,6 +316,7 @@ noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *sta
                         double from, double to);
 noc_status noc_vk_accumulate(void *view, const noc_frame *frame);
 void noc_vk_stats(void *view, noc_frame_stats *stats);
+bool noc_vk_finish(void *view);
 noc_status noc_vk_finish_flights(vk_view *v); /* waits for the view's frames in flight and takes what they counted */
 
 /* Traces the kept rays again, and nothing else. */
