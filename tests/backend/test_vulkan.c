@@ -102,10 +102,10 @@ static int chequers(noc_scene *scene) {
     return noc_scene_add_texture(scene, &(noc_texture){ 32, 32, rgb, .wrap = NOC_WRAP_MIRROR });
 }
 
-/* A square with places in an image, in the x-z plane of a model (0: the world). */
-static void add_board(noc_scene *scene, int texture, int model, double size) {
+/* A square in the x-z plane of a model (0: the world), with places in an image or without: then it shows none. */
+static void add_board(noc_scene *scene, int texture, int model, double size, bool placed) {
     noc_material m = { .albedo = { 0.9f, 0.8f, 0.7f }, .roughness = 0.4f, .f0 = 0.04f, .texture = texture };
-    const double xyz[] = { -size, 0, 0, size, 0, 0, size, 0, 2 * size, -size, 0, 2 * size };
+    const double y = placed ? 0 : 1, xyz[] = { -size, y, 0, size, y, 0, size, y, 2 * size, -size, y, 2 * size };
     const float uv[] = { 0, 0, 3, 0, 3, 3, 0, 3 };
     noc_mesh mesh = { .vertex_count = 4,
                       .positions = xyz,
@@ -113,7 +113,7 @@ static void add_board(noc_scene *scene, int texture, int model, double size) {
                       .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
                       .material = noc_scene_add_material(scene, &m),
                       .model = model,
-                      .uv = uv };
+                      .uv = placed ? uv : NULL };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
 }
 
@@ -131,9 +131,10 @@ static noc_scene *all_kinds(int *car) {
     int texture = chequers(s), profiles = add_test_profiles(s);
     int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { .2f, .2f, .25f }, .f0 = .05f, .roughness = .3f });
     add_floor(s, wet, 0, 0, 0, 12);
-    add_board(s, texture, 0, 3);
+    add_board(s, texture, 0, 3, true);
+    add_board(s, texture, 0, 4, false); /* behind: its upper edge is seen */
     int model = noc_scene_add_model(s, "car");
-    add_board(s, texture, model, 0.5);
+    add_board(s, texture, model, 0.5, true);
     noc_light head = { .kind = NOC_LIGHT_DISC,
                        .position = { 0, -0.1, 1.2 },
                        .direction = { 0, -1, -0.3 },

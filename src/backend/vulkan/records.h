@@ -33,8 +33,8 @@ struct vk_instance_record {
     ADDRESS(Floats, positions)                                                                                         \
     ADDRESS(Words, triangle_material)                                                                                  \
     ADDRESS(Words, triangle_light)                                                                                     \
-    ADDRESS(Words, image_places)   /* of each material the place of its texture + 1; 0: none */                        \
-    ADDRESS(Floats, image_corners) /* 2 a vertex */                                                                    \
+    ADDRESS(Words, image_places)  /* of each material the place of its texture + 1; 0: none */                         \
+    ADDRESS(Words, image_corners) /* 2 floats a vertex as bits; 0xffffffff: its mesh has none */                       \
     ADDRESS(Instances, instances)                                                                                      \
     ADDRESS(Backs, backs) /* of each instance */                                                                       \
     ADDRESS(Words, instance_lights)                                                                                    \

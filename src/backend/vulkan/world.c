@@ -64,7 +64,7 @@ static void changed_ranges(const noc_scene *s, uint64_t made, noc_range *triangl
     }
 }
 
-/* Places in images, two numbers a vertex; none where no mesh has them. */
+/* Places in images, two numbers a vertex: all bits set where the vertex's mesh has none, whatever its material has. */
 static noc_status fill_image_corners(vk_world *w) {
     const noc_scene *s = w->scene;
     size_t vertices = s->positions.len / 3;
@@ -73,6 +73,7 @@ static noc_status fill_image_corners(vk_world *w) {
     float(*uv)[2] = noc_alloc_large(vertices, sizeof(*uv));
     if (!uv)
         return noc_no_memory(w->log, "vulkan");
+    memset(uv, 0xff, vertices * sizeof(*uv));
     for (size_t i = 0; i < s->meshes.len; i++) {
         const noc_scene_mesh *m = &s->meshes.data[i];
         if (m->uv)

@@ -9,13 +9,14 @@ uint texel_load(uint place) { return HERE.texels.at[place]; }
 #include "core/primary.h"
 
 vec2 corner_in_image(uint vertex) {
-    return vec2(HERE.image_corners.at[2u * vertex], HERE.image_corners.at[2u * vertex + 1u]);
+    return vec2(uintBitsToFloat(HERE.image_corners.at[2u * vertex]),
+                uintBitsToFloat(HERE.image_corners.at[2u * vertex + 1u]));
 }
 
 /* The albedo that a texture gives the receiver r, 0: none. */
 uint texel_of(ray_hit h, receiver r, place p, uvec3 vertex, bool placed, placement m) {
     uint image = HERE.image_places.at[h.material];
-    if (image == 0u)
+    if (image == 0u || HERE.image_corners.at[2u * vertex.x] == 0xffffffffu)
         return 0u;
     image_corners at;
     vec2 a = corner_in_image(vertex.x), b = corner_in_image(vertex.y), c = corner_in_image(vertex.z);
