@@ -17,11 +17,16 @@
 #define LIGHT_PARALLELOGRAM 3u
 #define LIGHT_POINT 4u
 #define LIGHT_SPOT 5u
-#define LIGHT_TWO_SIDED 1u /* flag of a light; the other bits are the scene's */
+/* Flags of a light; the other bits are the scene's. From bit LIGHT_GROUP on its group. */
+#define LIGHT_TWO_SIDED 1u
+#define LIGHT_INFERRED 2u
+#define LIGHT_MOVES 4u
+#define LIGHT_GROUP 16
 /* Bits of a light's flags: the number of its profile, 0 for none. */
 #define LIGHT_PROFILE 6
 #define LIGHT_PROFILE_BITS 0xffc0u
 #define NO_LIGHT 0xffffffffu
+#define NO_INSTANCE 0xffffffffu /* in place of one: the world */
 /* Textures: core/texture.h. */
 #define TEXTURE_HEAD 32u /* words, enough for the levels of a longer side of 2^15 - 1 texels */
 #define TEXEL_THERE 0x40000000u

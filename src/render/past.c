@@ -1,6 +1,8 @@
 /* The frame before, of a scene that is edited: see past.h. */
 #include "render/past.h"
 
+#include "core/placement.h"
+
 /* ---- instances ---- */
 
 bool noc_placings_reserve(noc_placings *p, const noc_scene *scene) {
@@ -45,6 +47,49 @@ void noc_placings_follow(noc_placings *p, const noc_scene *scene) {
     p->past = p->known ? p->shape : shape;
     p->shape = shape;
     p->known = true;
+}
+
+/* The way back of an instance that was there in the frame before; NULL: there is none. */
+static const placing_back *back_of(const noc_placings *p, uint32_t instance) {
+    const placing_back *b = instance < p->back.len ? &p->back.data[instance] : NULL;
+    return b && b->known ? b : NULL;
+}
+
+/* Takes lane l of g back. */
+static void take_back(const placing_back *b, gblock *g, int l) {
+    receiver r = { V3(g->px[l], g->py[l], g->pz[l]), V3(g->nx[l], g->ny[l], g->nz[l]), g->depth[l], g->material[l],
+                   g->light[l] };
+    r = receiver_back(r, splat3(b->from), placement_of_rows(b->rows));
+    g->px[l] = r.p.x;
+    g->py[l] = r.p.y;
+    g->pz[l] = r.p.z;
+    g->nx[l] = r.n.x;
+    g->ny[l] = r.n.y;
+    g->nz[l] = r.n.z;
+}
+
+const gblock *noc_past_surfaces(const noc_past *past, const noc_scene *scene, const noc_placings *placings,
+                                const uint32_t instance[BLOCK], const gblock *g, gblock *moved) {
+    if (!instance || !noc_past_other_shape(past, scene))
+        return g;
+    *moved = *g;
+    for (int l = 0; l < BLOCK; l++) {
+        const placing_back *b = back_of(placings, instance[l]);
+        if (b)
+            take_back(b, moved, l);
+    }
+    return moved;
+}
+
+uint32_t noc_past_known(const noc_past *past, const noc_scene *scene, const noc_placings *placings,
+                        const uint32_t instance[BLOCK]) {
+    bool then = placings->past == noc_scene_shape(&past->seen);
+    uint32_t known = 0;
+    if (!instance || !noc_past_other_shape(past, scene))
+        return 0xffff;
+    for (int l = 0; l < BLOCK; l++)
+        known |= (uint32_t)(instance[l] == NO_INSTANCE || (then && back_of(placings, instance[l]))) << l;
+    return known;
 }
 
 /* ---- lights ---- */

@@ -4,7 +4,7 @@
 #ifndef NOC_PAST_H
 #define NOC_PAST_H
 
-#include "core/records.h"
+#include "core/blocks.h"
 #include "render/plan.h"
 #include "scene/scene.h"
 
@@ -43,5 +43,12 @@ bool noc_past_other_lights(const noc_past *past, const noc_scene *scene);
 static inline bool noc_past_other_shape(const noc_past *past, const noc_scene *scene) {
     return noc_scene_shape(&past->seen) != noc_scene_shape(&scene->versions);
 }
+/* The surfaces of a block, where they were in the frame before: those that moved instances show are taken back. Returns
+ * g itself where all are static, else `moved`. instance: that each lane sees; NULL: none. */
+const gblock *noc_past_surfaces(const noc_past *past, const noc_scene *scene, const noc_placings *placings,
+                                const uint32_t instance[BLOCK], const gblock *g, gblock *moved);
+/* Lanes of a block of which it is known where they were then: those of the world, and of instances that were there. */
+uint32_t noc_past_known(const noc_past *past, const noc_scene *scene, const noc_placings *placings,
+                        const uint32_t instance[BLOCK]);
 
 #endif

@@ -24,12 +24,12 @@ _Static_assert((int)WRAP_REPEAT == NOC_WRAP_REPEAT && (int)WRAP_MIRROR == NOC_WR
                "a texture's head has its wrap and all its levels");
 /* Flags of a light; from bit NOC_LIGHT_GROUP on its group. */
 #define NOC_LIGHT_TWO_SIDED LIGHT_TWO_SIDED
-#define NOC_LIGHT_INFERRED 2u
-#define NOC_LIGHT_MOVES 4u  /* of the moving half, else of the static one */
-#define NOC_LIGHT_FREE 8u   /* a slot without a light: no emission, never drawn */
-#define NOC_LIGHT_OWNED 16u /* comes and goes with a mesh or an instance */
+#define NOC_LIGHT_INFERRED LIGHT_INFERRED
+#define NOC_LIGHT_MOVES LIGHT_MOVES /* of the moving half, else of the static one */
+#define NOC_LIGHT_FREE 8u           /* a slot without a light: no emission, never drawn */
+#define NOC_LIGHT_OWNED 16u         /* comes and goes with a mesh or an instance */
 #define NOC_LIGHT_LATER 32u /* stands, and is of the moving half: it was added since what stands was last settled */
-#define NOC_LIGHT_GROUP 16  /* before it the profile's number: LIGHT_PROFILE */
+#define NOC_LIGHT_GROUP LIGHT_GROUP /* before it the profile's number: LIGHT_PROFILE */
 static inline bool noc_light_has_profile(const noc_light_record *r) { return r->flags & LIGHT_PROFILE_BITS; }
 static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
 /* What is taken for a lamp: windows and emissive surfaces are flat, headlamps move. */

@@ -8,7 +8,9 @@
 #include "backend/parts.h"
 #include "light/learned.h"
 #include "light/set.h"
+#include "render/emitter_coverage.h"
 #include "render/past.h"
+#include "render/frame_views.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -104,36 +106,6 @@ typedef struct worker {
     recorder record;
 } worker;
 
-/* Views (noc_aov): those of the frame being made, and of the last complete one, which stay until the next is complete.
- * Entries that neither asks for are NULL. */
-typedef struct aov_buffers {
-    float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
-    uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
-    uint64_t frames;      /* in the moments of the luminance */
-    int gbuffer;          /* of the last complete frame */
-    /* illuminance: bits of which of red, green and blue the lights have, bit n for n; of the scene after so many
-     * commits
-     */
-    uint32_t light_colours;
-    uint64_t coloured;
-    /* influential: of each light of the scene the first one of its emitter; of these versions of the scene */
-    float *emitter_labels;
-    size_t emitter_label_count;
-    uint64_t labelled[2];
-} aov_buffers;
-
-/* Sums over the frames of the mean, of those in which a lane saw an emitter: coverage.c. */
-typedef struct coverage_sum {
-    float rgb[3][BLOCK];
-    uint32_t frames[BLOCK];
-} coverage_sum;
-
-typedef struct coverage {
-    uint32_t *place; /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
-    NOC_ARRAY(coverage_sum) sums;
-    uint64_t frames; /* of the mean */
-} coverage;
-
 /* Buffers of one picture; every array has an entry a block. */
 typedef struct frame_buffers {
     int width, height, sets;
@@ -145,8 +117,9 @@ typedef struct frame_buffers {
     cblock *picture;                       /* mean, or last frame */
     uint16_t *emitter;                     /* lanes that see an emitter in the frame being made */
     uint32_t (*instance)[BLOCK];           /* that each lane sees, or NO_INSTANCE; NULL: the scene has had none */
-    coverage coverage;
-    aov_buffers aovs;
+    noc_coverage coverage;
+    noc_views views;
+    int kept; /* surfaces of the last complete frame: g[kept] */
     size_t bytes;
 } frame_buffers;
 
@@ -241,6 +214,8 @@ noc_status noc_cpu_follow(cpu_world *world);
 size_t noc_cpu_rays_bytes(const cpu_world *world); /* of the ray tracing structure */
 /* view.c: before a frame, room for what the scene has more than before */
 noc_status noc_cpu_fit_scene(cpu_view *s);
+/* A frame of the view, with these surfaces, for views and rows. */
+noc_frame_blocks noc_cpu_blocks(const cpu_view *s, int gbuffer);
 /* rays.c: what the tracer answers, and the book-keeping around it */
 /* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
  * Counts rays where each block says, and keeps them when recording. */
@@ -273,8 +248,6 @@ void noc_cpu_keep_past(cpu_view *s);
 struct core_context noc_cpu_previous(const cpu_view *s, const struct core_context *now, noc_ray_world *in);
 /* Takes surfaces that instances show back to where they were in the frame before; g itself where all stand. */
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved);
-/* Lanes of a block of which it is known where they were then: those of the world, and of instances that were there. */
-uint32_t noc_cpu_known_before(const cpu_view *s, size_t at);
 size_t noc_cpu_past_bytes(const cpu_view *s);
 size_t noc_cpu_light_bytes(const cpu_world *world);
 
@@ -319,25 +292,10 @@ void noc_cpu_spatial(stage_run *run, worker *w, tile t);
  */
 void noc_cpu_seen_before(stage_run *run, worker *w, tile t);
 
-/* aov.c */
-noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs); /* of the frame that begins */
+/* shading.c: what light adds to a block's colour, and to the views that ask for it */
 /* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
-void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
-                            const rblock *r);
-void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame); /* the frame is complete */
-
-/* sources.c */
-/* Labels of lights that a pixel has room for; with their sums they are twice as many arrays. Behind those of emitters
- * lies the sky's sum. */
-enum { SOURCE_PLACES = 8, EMITTER_PLACES = NOC_AOV_EMITTERS };
-static inline size_t noc_cpu_source_places(int aov) {
-    return aov == NOC_AOV_GROUP || aov == NOC_AOV_PLACED ? SOURCE_PLACES
-           : aov == NOC_AOV_INFLUENTIAL                  ? EMITTER_PLACES
-                                                         : 0;
-}
-static inline size_t noc_cpu_source_entries(int aov) {
-    return 2 * noc_cpu_source_places(aov) + (aov == NOC_AOV_INFLUENTIAL);
-}
+void noc_cpu_note_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
+                             const rblock *r);
 /* The samples' light goes into a block's colour, and into the views of where light comes from. brings: what the surface
  * reflects of each sample, unshadowed; NULL: not known. Returns the lanes that were dropped. */
 uint32_t noc_cpu_shade_samples(const stage_run *run, const gblock *g, const rblock *r, const cblock *brings,
@@ -347,27 +305,6 @@ uint32_t noc_cpu_shade_sky(const stage_run *run, const gblock *g, const rayblock
                            uint32_t lanes, size_t block);
 /* Emitters that are seen: c is their luminance. Comes before the two. */
 void noc_cpu_note_emitters(const stage_run *run, const gblock *g, const cblock *c, size_t block);
-/* Before a frame that asks for illuminance. */
-void noc_cpu_find_light_colours(cpu_view *s);
-/* The frame is complete; fresh: bits of views whose sums begin with it. */
-void noc_cpu_keep_sources(aov_buffers *v, size_t block, uint32_t fresh);
-float noc_cpu_mean_lux(const aov_buffers *v, size_t block, int lane); /* -1: no frame saw a surface */
-float noc_cpu_main_source(float (*place)[BLOCK], int lane);
-/* One of the four views of emitters. */
-float noc_cpu_emitter_view(const aov_buffers *v, noc_aov aov, size_t block, int lane);
-/* Before a frame that asks for one of them. */
-noc_status noc_cpu_label_emitters(cpu_view *s);
-/* label of the most light; -1: there is none */
-
-/* coverage.c: what emitters that are seen directly add to the mean */
-/* room for the frame, when its shading is done */
-noc_status noc_cpu_make_coverage(cpu_view *s, const noc_frame *frame);
-void noc_cpu_keep_coverage(cpu_view *s, const noc_frame *frame);                          /* the frame is complete */
-void noc_cpu_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
-bool noc_cpu_saw_emitter(const frame_buffers *b, size_t block, int lane);                 /* in a frame of the mean */
-void noc_cpu_free_coverage(coverage *c);
-void noc_cpu_free_aovs(aov_buffers *aovs);
-size_t noc_cpu_aov_bytes(uint32_t aovs); /* a pixel */
 
 static inline size_t block_at(const frame_buffers *b, int bx, int by) {
     return (size_t)by * (size_t)b->blocks_x + (size_t)bx;

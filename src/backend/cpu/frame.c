@@ -58,8 +58,10 @@ static noc_status begin_frame(cpu_view *s, const noc_frame *frame) {
         status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
     if (status == NOC_OK && frame->constants.flags & FRAME_MAP_LIGHTS)
         status = noc_light_set_map(s->world->lights, &s->map_light);
-    if (status == NOC_OK)
-        status = noc_cpu_begin_aovs(s, frame->params->aovs);
+    if (status == NOC_OK) {
+        noc_frame_blocks b = noc_cpu_blocks(s, frame->gbuffer);
+        status = noc_views_begin(&s->b.views, s->scene, &b, frame->params->aovs, s->log);
+    }
     if (status == NOC_OK)
         noc_cpu_forget_found(s);
     return status == NOC_OK ? noc_cpu_begin_learning(s, frame) : status;
@@ -116,11 +118,15 @@ static void mean_row(void *arg, size_t row, int index) {
 
 noc_status noc_cpu_accumulate(void *state, const noc_frame *frame) {
     cpu_view *s = state;
-    noc_status status = noc_cpu_make_coverage(s, frame);
-    if (status != NOC_OK)
-        return status;
-    noc_cpu_keep_aovs(s, frame);
-    noc_cpu_keep_coverage(s, frame);
+    frame_buffers *b = &s->b;
+    size_t count = (size_t)b->blocks_x * (size_t)b->blocks_y;
+    if (!noc_coverage_reserve(&b->coverage, b->emitter, count, frame->accumulated))
+        return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", b->width,
+                         b->height);
+    noc_frame_blocks blocks = noc_cpu_blocks(s, frame->gbuffer);
+    noc_views_keep(&b->views, &blocks, frame);
+    noc_coverage_keep(&b->coverage, b->emitter, blocks.g, b->colour, count, frame->accumulated);
+    b->kept = frame->gbuffer;
     noc_cpu_keep_past(s);
     noc_cpu_end_learning(s, frame);
     if (!frame->accumulated) {

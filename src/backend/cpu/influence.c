@@ -106,7 +106,7 @@ static void make_set(drawing *d, const sixteen *s) {
 
 /* How often the light that a lane chose is expected among its candidates. */
 static void note_density(const drawing *d, size_t block, int to, int from, const rblock *r) {
-    float(*density)[BLOCK] = d->run->s->b.aovs.made[NOC_AOV_DENSITY];
+    float(*density)[BLOCK] = d->run->s->b.views.made[NOC_AOV_DENSITY];
     const presample_row *set = d->w->picks->set;
     for (int i = 0; density && r->w[from] > 0 && i < d->m; i++)
         if (set[i].light[from] == r->light[from])

@@ -48,7 +48,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
                      int x, int y) {
     ray_draw *d = &t->draws[t->count];
     shadow_block *s = &t->segments[t->count++];
-    float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
+    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     d->block = block;
     d->rays = t->asked.most;
     s->valid = 0;
@@ -110,7 +110,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
             add_rays(run, t, &ctx, g, n, k, at.x, at.y);
         keep_one(run, t, &ctx, n, at.x, at.y, r);
         if (run->frame->params->aovs)
-            noc_cpu_aov_candidates(run, w, n, at.at, lanes, r);
+            noc_cpu_note_candidates(run, w, n, at.at, lanes, r);
     }
 }
 

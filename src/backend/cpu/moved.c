@@ -2,9 +2,6 @@
  * to where they were. */
 #include "backend/cpu/cpu.h"
 
-#include "backend/cpu/lanes_tmpl.h"
-#include "core/placement.h"
-
 /* Lights that the frame before did not have are dark in it. */
 static bool make_room(cpu_view *s, size_t room) {
     size_t have = s->past.filled ? s->past.room : 0;
@@ -41,35 +38,7 @@ struct core_context noc_cpu_previous(const cpu_view *s, const struct core_contex
 
 size_t noc_cpu_past_bytes(const cpu_view *s) { return s->past.room * sizeof(*s->previous_lights); }
 
-/* The way back of an instance that was there in the frame before; NULL: there is none. */
-static const placing_back *back_of(const cpu_view *s, uint32_t instance) {
-    const noc_placings *p = &s->world->placings;
-    const placing_back *b = instance < p->back.len ? &p->back.data[instance] : NULL;
-    return b && b->known ? b : NULL;
-}
-
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved) {
-    if (!s->b.instance || !noc_past_other_shape(&s->past, s->scene))
-        return g;
-    *moved = *g;
-    for (int l = 0; l < BLOCK; l++) {
-        const placing_back *b = back_of(s, s->b.instance[at][l]);
-        if (b)
-            receiver_store(moved, l,
-                           receiver_back(receiver_load(g, l), V3(b->from[0], b->from[1], b->from[2]),
-                                         placement_of_rows(b->rows)));
-    }
-    return moved;
-}
-
-uint32_t noc_cpu_known_before(const cpu_view *s, size_t at) {
-    uint64_t then = noc_scene_shape(&s->past.seen);
-    uint32_t known = 0;
-    if (!s->b.instance || !noc_past_other_shape(&s->past, s->scene))
-        return 0xffff;
-    for (int l = 0; l < BLOCK; l++) {
-        uint32_t i = s->b.instance[at][l];
-        known |= (uint32_t)(i == NO_INSTANCE || (s->world->placings.past == then && back_of(s, i))) << l;
-    }
-    return known;
+    return noc_past_surfaces(&s->past, s->scene, &s->world->placings, s->b.instance ? s->b.instance[at] : NULL, g,
+                             moved);
 }

@@ -15,7 +15,7 @@ int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS
 }
 
 shadow_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
-    float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
+    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     shadow_block *s = &w->batch.blocks[w->batch.count++];
     s->valid = valid;
     s->counts = counts ? counts[at] : NULL;
@@ -102,7 +102,7 @@ static void find_volumes(stage_run *run, worker *w, const tile_points *p) {
 static void end_candidates(stage_run *run, worker *w, const tile_points *points, int i) {
     rblock *r = &run->s->b.r[run->stage->target][points->block[i].at];
     if (run->frame->params->aovs)
-        noc_cpu_aov_candidates(run, w, i, points->block[i].at, points->lanes[i], r);
+        noc_cpu_note_candidates(run, w, i, points->block[i].at, points->lanes[i], r);
     run->s->b.visible[run->stage->target][points->block[i].at] = 0;
 }
 

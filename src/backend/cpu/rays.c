@@ -86,16 +86,6 @@ static void closest(const cpu_world *world, noc_ray_world in, const rayblock *ra
     world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, hits);
 }
 
-/* Views of what lane l sees, where they are asked for. */
-static void note_object(const cpu_view *s, uint32_t triangle, size_t at, int l) {
-    float(*objects)[BLOCK] = s->b.aovs.made[NOC_AOV_OBJECT], (*walls)[BLOCK] = s->b.aovs.made[NOC_AOV_CLASS];
-    if (objects)
-        objects[at][l] = (float)noc_scene_object_of(s->scene, triangle);
-    noc_wall_verdict verdict = walls ? noc_scene_wall(s->scene, triangle) : NOC_WALL_UNSEEN;
-    if (verdict)
-        walls[at][l] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);
-}
-
 void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint32_t valid, size_t at) {
     cpu_view *s = run->s;
     hitblock h;
@@ -108,7 +98,7 @@ void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint
     for (int l = 0; l < BLOCK; l++)
         if (h.triangle[l] != NO_HIT) {
             gather_hit(s->scene, &h, l, &found);
-            note_object(s, h.triangle[l], at, l);
+            noc_views_note_triangle(&s->b.views, s->scene, h.triangle[l], at, l);
         }
     run->k->hits(&run->ctx, rays, &found, &s->b.g[run->frame->gbuffer][at]);
 }

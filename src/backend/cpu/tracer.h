@@ -23,7 +23,6 @@ typedef struct hitblock {
     float t[BLOCK];                   /* along the ray's direction, in its lengths */
 } hitblock;
 #define NO_HIT UINT32_MAX
-#define NO_INSTANCE UINT32_MAX
 
 /* What rays are traced against. */
 typedef enum noc_ray_world {

@@ -13,8 +13,8 @@ static void free_buffers(frame_buffers *b) {
     free(b->picture);
     free(b->emitter);
     free(b->instance);
-    noc_cpu_free_coverage(&b->coverage);
-    noc_cpu_free_aovs(&b->aovs);
+    noc_coverage_free(&b->coverage);
+    noc_views_free(&b->views);
     *b = (frame_buffers){ 0 };
 }
 
@@ -120,7 +120,7 @@ noc_status noc_cpu_view_resize(void *state, int width, int height, int sets) {
     return NOC_OK;
 }
 
-size_t noc_cpu_bytes_a_pixel(int sets, uint32_t aovs) { return bytes_a_block(sets) / BLOCK + noc_cpu_aov_bytes(aovs); }
+size_t noc_cpu_bytes_a_pixel(int sets, uint32_t aovs) { return bytes_a_block(sets) / BLOCK + noc_views_bytes(aovs); }
 
 noc_status noc_cpu_read(void *state, noc_image *image) {
     const frame_buffers *b = &((cpu_view *)state)->b;
@@ -131,11 +131,41 @@ noc_status noc_cpu_read(void *state, noc_image *image) {
             for (int k = 0; k < 3; k++)
                 image->rgb[3 * to + k] = b->picture[at].rgb[k][l];
             if (image->emitter)
-                image->emitter[to] = noc_cpu_saw_emitter(b, at, l);
+                image->emitter[to] = noc_coverage_saw(&b->coverage, at, l);
             if (image->coverage)
-                noc_cpu_read_coverage(b, at, l, image->coverage + 4 * to);
+                noc_coverage_read(&b->coverage, at, l, image->coverage + 4 * to);
         }
     return NOC_OK;
+}
+
+noc_frame_blocks noc_cpu_blocks(const cpu_view *s, int gbuffer) {
+    const frame_buffers *b = &s->b;
+    return (noc_frame_blocks){ .scene = s->scene,
+                               .pool = s->pool,
+                               .width = b->width,
+                               .height = b->height,
+                               .blocks_x = b->blocks_x,
+                               .blocks_y = b->blocks_y,
+                               .g = b->g[gbuffer],
+                               .r = b->r[s->shaded_set],
+                               .colour = b->colour,
+                               .picture = b->picture,
+                               .instance = (const uint32_t(*)[BLOCK])b->instance,
+                               .emitter = b->coverage.seen,
+                               .past = &s->past,
+                               .placings = &s->world->placings };
+}
+
+bool noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
+    const cpu_view *s = state;
+    noc_frame_blocks b = noc_cpu_blocks(s, s->b.kept);
+    return noc_views_read(&s->b.views, &b, aov, value);
+}
+
+void noc_cpu_rows(void *state, const frame_camera *camera, const noc_frame_rows *rows) {
+    const cpu_view *s = state;
+    noc_frame_blocks b = noc_cpu_blocks(s, s->b.kept);
+    noc_views_rows(&s->b.views, &b, camera, rows);
 }
 
 void noc_cpu_stats(void *state, noc_frame_stats *out) {
@@ -154,11 +184,11 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
     out->build_seconds = s->world->build_seconds;
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
     out->picture_bytes = s->b.bytes + (s->b.instance ? blocks * sizeof(*s->b.instance) : 0) +
-                         blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked | s->b.aovs.held);
+                         blocks * BLOCK * noc_views_bytes(s->b.views.asked | s->b.views.held);
     out->structure_bytes = noc_cpu_rays_bytes(s->world);
     out->learned_bytes = s->learned ? s->learned->count * sizeof(*s->learned->cells) : 0;
     out->memory_bytes = out->picture_bytes + out->structure_bytes + out->learned_bytes + noc_cpu_light_bytes(s->world) +
-                        noc_cpu_past_bytes(s) + s->b.aovs.emitter_label_count * sizeof(*s->b.aovs.emitter_labels) +
+                        noc_cpu_past_bytes(s) + s->b.views.emitter_label_count * sizeof(*s->b.views.emitter_labels) +
                         (s->samples ? PRESAMPLES / BLOCK * sizeof(*s->samples) : 0) +
                         (s->sample_volumes ? PRESAMPLES / BLOCK * sizeof(*s->sample_volumes) : 0);
     out->path = s->kernels->name;

@@ -14,7 +14,6 @@
 #include "backend/vulkan/records.h"
 
 #define NO_HIT 0xffffffffu
-#define NO_INSTANCE 0xffffffffu
 
 /* Candidates that blocks share, 16 a row: presample_row of backend/cpu/kernels.h. */
 struct sample_row {

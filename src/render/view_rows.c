@@ -1,9 +1,13 @@
-/* The last complete frame alone, as planes of rows: for who works on finished frames. */
-#include "backend/cpu/cpu.h"
-#include "backend/cpu/lanes_tmpl.h"
+/* The last complete frame alone, as planes of rows: for the smoother. */
+#include "render/frame_views.h"
+
+#include "core/texel.h"
+
+#include <math.h>
 
 struct rows_run {
-    const cpu_view *s;
+    const noc_views *v;
+    const noc_frame_blocks *b;
     const frame_camera *from;
     const noc_frame_rows *rows;
 };
@@ -32,27 +36,27 @@ static void store(float *const to[3], size_t i, v3 v) {
 }
 
 static void pixel(const struct rows_run *run, size_t at, int l, size_t to) {
-    const frame_buffers *b = &run->s->b;
+    const noc_frame_blocks *b = run->b;
     const noc_frame_rows *out = run->rows;
-    const gblock *g = &b->g[b->aovs.gbuffer][at];
+    const gblock *g = &b->g[at];
     const cblock *c = &b->colour[at];
-    const float(*motion)[BLOCK] = (const float(*)[BLOCK]) & b->aovs.kept[NOC_AOV_MOTION][3 * at];
+    float(*motion)[BLOCK] = &run->v->kept[NOC_AOV_MOTION][3 * at];
     bool some = g->material[l] != NO_SURFACE;
     const float *eye = run->from->eye, *sight = run->from->forward;
     store(out->rgb, to, V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l]));
     store(out->motion, to, V3(motion[0][l], motion[1][l], motion[2][l]));
     store(out->normal, to, some ? V3(g->nx[l], g->ny[l], g->nz[l]) : V3(0, 0, 0));
-    store(out->reflects, to, some ? reflects(run->s->scene, g, l) : V3(1, 1, 1));
+    store(out->reflects, to, some ? reflects(b->scene, g, l) : V3(1, 1, 1));
     out->depth[to] =
         !some ? 0 : (g->px[l] - eye[0]) * sight[0] + (g->py[l] - eye[1]) * sight[1] + (g->pz[l] - eye[2]) * sight[2];
-    noc_row_kind kind = !some ? NOC_ROW_NOTHING : g->light[l] != NOC_NO_LIGHT ? NOC_ROW_EMITTER : NOC_ROW_SURFACE;
-    uint32_t instance = some && b->instance ? b->instance[at][l] + 1 : 0; /* NO_INSTANCE + 1 is 0 */
-    out->what[to] = (uint32_t)kind | (some ? surface_of(run->s->scene, g, l, instance) : 0);
+    noc_row_kind kind = !some ? NOC_ROW_NOTHING : g->light[l] != NO_LIGHT ? NOC_ROW_EMITTER : NOC_ROW_SURFACE;
+    uint32_t instance = some && b->instance ? b->instance[at][l] + 1 : 0; /* of none it is UINT32_MAX */
+    out->what[to] = (uint32_t)kind | (some ? surface_of(b->scene, g, l, instance) : 0);
 }
 
 static void block_row(void *arg, size_t row, int index) {
     const struct rows_run *run = arg;
-    const frame_buffers *b = &run->s->b;
+    const noc_frame_blocks *b = run->b;
     (void)index;
     for (int y = (int)row * BLOCK_SIDE; y < NOC_MIN((int)(row + 1) * BLOCK_SIDE, b->height); y++)
         for (int x = 0; x < b->width; x++)
@@ -60,7 +64,8 @@ static void block_row(void *arg, size_t row, int index) {
                   (size_t)y * (size_t)b->width + (size_t)x);
 }
 
-void noc_cpu_rows(void *view, const frame_camera *from, const noc_frame_rows *rows) {
-    struct rows_run run = { view, from, rows };
-    noc_pool_run(run.s->pool, (size_t)run.s->b.blocks_y, block_row, &run);
+void noc_views_rows(const noc_views *v, const noc_frame_blocks *b, const frame_camera *camera,
+                    const noc_frame_rows *rows) {
+    struct rows_run run = { v, b, camera, rows };
+    noc_pool_run(b->pool, (size_t)b->blocks_y, block_row, &run);
 }
