@@ -61,6 +61,7 @@ static size_t waits, dispatches, plans, noticed;
 static void check_barriers(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
+    facts.views = plans % 2; /* what steps gather for views has barriers, too */
     model m = { 0 };
     (void)surfaces;
     if (!known(plan))
@@ -85,6 +86,7 @@ static void each_step_sees_what_it_reads(void **state) {
 static void check_each_barrier(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
+    facts.views = noticed / 16 % 2;
     (void)surfaces;
     if (!known(plan) || p->passes != 2 || history > 0)
         return;

@@ -134,6 +134,7 @@ static noc_scene *all_kinds(int *car) {
     add_board(s, texture, 0, 3, true);
     add_board(s, texture, 0, 4, false); /* behind: its upper edge is seen */
     int model = noc_scene_add_model(s, "car");
+    int groups[2] = { noc_scene_add_group(s, "left"), noc_scene_add_group(s, "right") };
     add_board(s, texture, model, 0.5, true);
     noc_light head = { .kind = NOC_LIGHT_DISC,
                        .position = { 0, -0.1, 1.2 },
@@ -144,6 +145,7 @@ static noc_scene *all_kinds(int *car) {
     assert_true(noc_scene_add_light(s, &head) >= 0);
     for (int i = 0; i < 60; i++) {
         noc_light l = crowd_light(i, -2);
+        l.group = i % 3 ? groups[i % 3 - 1] : 0;
         if (l.kind == NOC_LIGHT_SPHERE) {
             l.profile = profiles + i % TEST_PROFILES;
             l.direction[1] = 0;
@@ -230,6 +232,138 @@ static void edits_have_the_same_bits(void **state) {
         close_twins(&t);
         noc_scene_destroy(scene);
     }
+}
+
+/* ---- views ---- */
+
+#define AOV(name) (1u << NOC_AOV_##name)
+enum {
+    OF_RESERVOIRS = AOV(DENSITY) | AOV(LIGHT) | AOV(WEIGHT) | AOV(CONFIDENCE),
+    OF_SURFACES = AOV(DEPTH) | AOV(NORMAL) | AOV(CLASS) | AOV(OBJECT) | AOV(MOTION),
+    ALL_VIEWS = ((1u << NOC_AOV_COUNT) - 1) & ~AOV(LIGHTS), /* which lists and influence have */
+};
+
+/* Of every view that the last frames kept; returns those that say something, bits 1 << aov. */
+static uint32_t expect_same_views(twins *t, uint32_t aovs, const char *name) {
+    uint32_t told = 0;
+    for (noc_aov aov = 0; aov < NOC_AOV_COUNT; aov++) {
+        if (!(aovs >> aov & 1))
+            continue;
+        noc_channel *a = noc_view_aov(t->cpu, aov), *b = noc_view_aov(t->gpu, aov);
+        assert_true(a && b);
+        size_t n = (size_t)a->width * (size_t)a->height * (size_t)a->components, off = 0;
+        for (size_t i = 0; i < n; i++) {
+            off += memcmp(&a->value[i], &b->value[i], sizeof(float)) != 0;
+            told |= (uint32_t)(a->value[i] > 0) << aov;
+        }
+        if (off)
+            fail_msg("%s, frame %u: view %s differs in %zu of %zu numbers", name, t->cpu->history.index,
+                     noc_aov_name(aov), off, n);
+        noc_channel_destroy(a);
+        noc_channel_destroy(b);
+    }
+    return told;
+}
+
+/* Rows of the last frame, a plane after the other. */
+enum { PLANES = 14 };
+static float *rows_of(noc_view *v, size_t n) {
+    float *p = noc_calloc(PLANES * n, sizeof(*p));
+    assert_non_null(p);
+    noc_frame_rows rows = { .rgb = { p, p + n, p + 2 * n },
+                            .reflects = { p + 3 * n, p + 4 * n, p + 5 * n },
+                            .normal = { p + 6 * n, p + 7 * n, p + 8 * n },
+                            .depth = p + 9 * n,
+                            .motion = { p + 10 * n, p + 11 * n, p + 12 * n },
+                            .what = (uint32_t *)(void *)(p + 13 * n) };
+    noc_view_rows(v, &rows);
+    return p;
+}
+
+static void expect_same_rows(twins *t, const noc_render_params *p, const char *name) {
+    size_t n = (size_t)p->width * (size_t)p->height;
+    float *a = rows_of(t->cpu, n), *b = rows_of(t->gpu, n);
+    if (memcmp(a, b, PLANES * n * sizeof(*a)) != 0)
+        fail_msg("%s, frame %u: rows differ", name, t->cpu->history.index);
+    free(a);
+    free(b);
+}
+
+static void views_have_the_same_bits(void **state) {
+    static const struct {
+        const char *name;
+        noc_method method;
+        noc_candidates candidates;
+        bool map;
+        uint32_t without; /* what the plan does not have */
+    } rows[] = {
+        { "restir", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, false, 0 },
+        { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER, false, 0 },
+        { "ris, light-bvh, map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, true, 0 },
+        { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, OF_RESERVOIRS },
+        { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, ~(uint32_t)OF_SURFACES },
+    };
+    noc_log *log = noc_log_create(NULL);
+    noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
+    (void)state;
+    for (size_t row = 0; row < NOC_COUNT(rows); row++) {
+        int car;
+        uint32_t told = 0;
+        noc_scene *scene = all_kinds(&car);
+        noc_image *map = rows[row].map ? bright_map() : NULL;
+        twins t;
+        if (map)
+            assert_int_equal(noc_scene_set_environment(scene, map), NOC_OK);
+        noc_image_destroy(map);
+        if (!open_twins(scene, true, log, &t))
+            skip();
+        noc_render_params p = all_kinds_params(rows[row].method, rows[row].map);
+        p.candidates = rows[row].candidates;
+        p.rays = 20;
+        p.aovs = ALL_VIEWS & ~rows[row].without;
+        for (int f = 0; f < 4; f++) {
+            noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * (f / 2), 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
+            if (f == 2)
+                assert_int_equal(noc_scene_set_transform(scene, car, in.transform), NOC_OK);
+            assert_int_equal(noc_scene_commit(scene), NOC_OK);
+            expect_same_frame(&t, &camera, &p, rows[row].name);
+            told |= expect_same_views(&t, p.aovs, rows[row].name);
+            expect_same_rows(&t, &p, rows[row].name);
+        }
+        if (p.aovs & ~told)
+            fail_msg("%s: views that say nothing: %x", rows[row].name, p.aovs & ~told);
+        close_twins(&t);
+        noc_scene_destroy(scene);
+    }
+}
+
+/* Walls of a city with their classes; and a picture does not change by the views that are asked for. */
+static void pictures_do_not_change_by_views(void **state) {
+    noc_scene *scene = builtin("city");
+    noc_log *log = noc_log_create(NULL);
+    noc_camera camera;
+    noc_image *image[2];
+    twins t;
+    (void)state;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &camera), NOC_OK);
+    if (!open_twins(scene, true, log, &t))
+        skip();
+    noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
+    for (int i = 0; i < 2; i++) {
+        p.aovs = i ? ALL_VIEWS : 0;
+        expect_same_bits(&t, &camera, &p, 2, "city");
+        image[i] = noc_view_image(t.gpu);
+        assert_non_null(image[i]);
+    }
+    assert_memory_equal(image[0]->rgb, image[1]->rgb, 3 * SIDE * SIDE * sizeof(float));
+    assert_int_equal(~expect_same_views(&t, ALL_VIEWS, "city") & (AOV(CLASS) | AOV(OBJECT) | AOV(VARIANCE)), 0);
+    p.aovs = 0;
+    assert_int_equal(noc_view_render(t.gpu, &camera, &p, NULL), NOC_OK);
+    assert_null(noc_view_aov(t.gpu, NOC_AOV_DEPTH)); /* the last frame did not keep it */
+    noc_image_destroy(image[0]);
+    noc_image_destroy(image[1]);
+    close_twins(&t);
+    noc_scene_destroy(scene);
 }
 
 /* ---- rays ---- */
@@ -329,6 +463,7 @@ static void views_are_independent(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plans_have_the_same_bits), cmocka_unit_test(all_kinds_have_the_same_bits),
+        cmocka_unit_test(views_have_the_same_bits), cmocka_unit_test(pictures_do_not_change_by_views),
         cmocka_unit_test(edits_have_the_same_bits), cmocka_unit_test(rays_agree),
         cmocka_unit_test(views_are_independent),
     };

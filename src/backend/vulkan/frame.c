@@ -60,6 +60,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
                        .history = frame->constants.flags & FRAME_HISTORY && !v->past.lost,
                        .past = noc_past_other_shape(&v->past, v->scene),
                        .given = frame->receivers != NULL,
+                       .views = v->views.bits != 0,
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
@@ -107,6 +108,17 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .samples = v->samples.address,
         .scratch = v->scratch.address,
         .counters = v->counters.address,
+        .view_rays = v->views.gathered[NOC_AOV_RAYS].address,
+        .view_density = v->views.gathered[NOC_AOV_DENSITY].address,
+        .view_lux = v->views.gathered[NOC_AOV_ILLUMINANCE].address,
+        .view_group = v->views.gathered[NOC_AOV_GROUP].address,
+        .view_placed = v->views.gathered[NOC_AOV_PLACED].address,
+        .view_emitters = v->views.gathered[NOC_AOV_INFLUENTIAL].address,
+        .emitter_labels = v->views.labels.address,
+        .view_triangles = v->views.triangles.address,
+        .views = v->views.bits,
+        .light_colours = v->views.of.light_colours,
+        .by_power = frame->plan->candidates == NOC_CANDIDATES_POWER,
         .light_count = (uint32_t)v->scene->lights.len,
         .textured = v->scene->texels.len > 0,
         .instanced = b->instance.bytes > 0,
@@ -254,9 +266,15 @@ static noc_status record(vk_view *v, const noc_frame *frame, vk_steps *steps) {
 /* ---- a frame ---- */
 
 static noc_status refuse(const vk_view *v, const noc_frame *frame) {
-    const noc_render_params *p = frame->params;
-    if (p->aovs)
-        return noc_error(v->log, NOC_ERR_UNSUPPORTED, "vulkan: no views (aovs) on this backend yet: use embree");
+    static const uint32_t of_lists = NOC_AOV_BIT(LIGHTS) | NOC_AOV_BIT(DENSITY) | NOC_AOV_BIT(GROUP) |
+                                     NOC_AOV_BIT(PLACED) | NOC_AOV_BIT(ILLUMINANCE) | NOC_AOV_BITS_EMITTERS;
+    uint32_t missing = frame->plan->shares_rays || frame->plan->candidates == NOC_CANDIDATES_LISTS
+                           ? frame->params->aovs & of_lists
+                           : frame->params->aovs & NOC_AOV_BIT(LIGHTS);
+    if (frame->plan->draws && missing)
+        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
+                         "vulkan: no view \"%s\" of candidates lists and influence on this backend yet",
+                         noc_aov_name((noc_aov)__builtin_ctz(missing)));
     if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_LISTS)
         return noc_error(v->log, NOC_ERR_UNSUPPORTED,
                          "vulkan: no candidates \"lists\" on this backend yet (there are uniform and power)");
@@ -320,6 +338,8 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = fit_buffers(v, frame);
     if (status == NOC_OK && frame->receivers)
         status = upload_receivers(v, frame);
+    if (status == NOC_OK)
+        status = noc_vk_begin_views(v, frame->params->aovs);
     return status == NOC_OK && shares(frame->plan) ? noc_vk_view_fit_samples(v, frame->plan->candidate_count) : status;
 }
 
@@ -339,6 +359,7 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
                                                : (uint64_t)v->b.width * (uint64_t)v->b.height };
     v->hazards = (vk_hazards){ 0 };
     vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
+    noc_vk_clear_views(v, f->commands);
     noc_vk_barrier(f->commands);
     start_times(v->device, f);
     return NOC_OK;
@@ -401,11 +422,14 @@ static noc_status submit(vk_view *v) {
 noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     vk_view *v = view;
     vk_facts facts = facts_of(v, frame);
+    noc_past past = v->past;
     v->steps.len = 0;
     noc_status status =
         noc_vk_schedule_mean(&facts, &v->steps) ? record(v, frame, &v->steps) : noc_no_memory(v->log, "render");
     if (status == NOC_OK)
         status = submit(v);
+    if (status == NOC_OK)
+        status = noc_vk_keep_views(v, frame, &past);
     if (status == NOC_OK)
         v->coverage_frames = frame->accumulated + 1;
     return drop(v, status);
@@ -444,7 +468,8 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->dropped += v->stats.dropped;
     v->stats.dropped = 0;
     out->build_seconds = v->world->build_seconds;
-    out->picture_bytes = v->b.bytes;
+    out->picture_bytes = v->b.bytes + (size_t)v->b.blocks_x * v->b.blocks_y * BLOCK *
+                                          noc_vk_views_bytes(v->views.of.asked | v->views.of.held);
     out->structure_bytes = noc_vk_structure_bytes(v->world);
     out->memory_bytes = d->bytes;
     out->path = "vulkan";
@@ -474,19 +499,4 @@ noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
     if (status == NOC_OK)
         *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
     return status;
-}
-
-/* ---- what this backend does not do yet ---- */
-
-bool noc_vk_read_aov(void *view, noc_aov aov, float *value) {
-    (void)view;
-    (void)aov;
-    (void)value;
-    return false;
-}
-
-void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows) {
-    (void)view;
-    (void)camera;
-    (void)rows;
 }

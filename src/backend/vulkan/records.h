@@ -62,6 +62,14 @@ struct vk_instance_record {
     ADDRESS(SampleRows, samples)                                                                                       \
     ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
     ADDRESS(Words, counters)                                                                                           \
+    ADDRESS(Floats, view_rays) /* what views gather, as noc_views.made has it */                                       \
+    ADDRESS(Floats, view_density)                                                                                      \
+    ADDRESS(Floats, view_lux)                                                                                          \
+    ADDRESS(Floats, view_group)                                                                                        \
+    ADDRESS(Floats, view_placed)                                                                                       \
+    ADDRESS(Floats, view_emitters)                                                                                     \
+    ADDRESS(Floats, emitter_labels) /* of each light */                                                                \
+    ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
     WORD(uint32_t, light_count)                                                                                        \
     WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
@@ -77,10 +85,22 @@ struct vk_instance_record {
     WORD(uint32_t, dimension) /* of reuse: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */                                 \
     WORD(uint32_t, first_row) /* of blocks, at which this dispatch begins, and how many its band has */                \
     WORD(uint32_t, rows)                                                                                               \
-    WORD(uint32_t, first) /* ray, or chunk of lights, at which this dispatch begins */                                 \
-    WORD(uint32_t, fresh) /* 1: the mean begins with this frame */                                                     \
-    WORD(float, share)    /* of this frame in the mean */                                                              \
+    WORD(uint32_t, first)         /* ray, or chunk of lights, at which this dispatch begins */                         \
+    WORD(uint32_t, views)         /* VK_VIEW_ bits of what is gathered */                                              \
+    WORD(uint32_t, light_colours) /* core/measured.h */                                                                \
+    WORD(uint32_t, by_power)      /* 1: candidates are drawn by power */                                               \
+    WORD(uint32_t, fresh)         /* 1: the mean begins with this frame */                                             \
+    WORD(float, share)            /* of this frame in the mean */                                                      \
     WORD(float, ray_offset)
+
+#define VK_VIEW_RAYS 1u
+#define VK_VIEW_DENSITY 2u
+#define VK_VIEW_LUX 4u
+#define VK_VIEW_GROUP 8u
+#define VK_VIEW_PLACED 16u
+#define VK_VIEW_EMITTERS 32u
+#define VK_VIEW_TRIANGLES 64u
+#define VK_NO_TRIANGLE 0xffffffffu
 
 #define VK_ANSWER_NONE 0u   /* of a ray: there is none */
 #define VK_ANSWER_WANTED 1u /* to be traced; afterwards: something is in the way */

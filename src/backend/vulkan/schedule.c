@@ -17,7 +17,23 @@ typedef struct scheduling {
 
 static uint32_t set_bit(int set) { return R(SET) << set; }
 
+/* Shaders that gather for views. */
+static bool gathers(vk_shader shader) {
+    static const bool yes[VK_SHADER_COUNT] = {
+#define YES(name) [VK_SHADER_##name] = true
+        YES(primary_use),   YES(place),       YES(candidates_shared), YES(candidates_tree), YES(resolve_ask),
+        YES(temporal_ask),  YES(spatial_ask), YES(emitters),          YES(shade_use),       YES(reference_ask),
+        YES(reference_use), YES(sky_ask),     YES(sky_use),
+#undef YES
+    };
+    return yes[shader];
+}
+
 static vk_step *add(scheduling *s, vk_shader shader, uint32_t reads, uint32_t writes) {
+    if (s->facts->views && gathers(shader)) {
+        reads |= R(VIEWS);
+        writes |= R(VIEWS);
+    }
     vk_step step = { .shader = shader,
                      .reads = reads,
                      .writes = writes,

@@ -23,6 +23,7 @@ typedef enum vk_resource {
     VK_RESOURCE_HITS,
     VK_RESOURCE_SAMPLES,
     VK_RESOURCE_SCRATCH,
+    VK_RESOURCE_VIEWS, /* what views gather */
     VK_RESOURCE_COUNT
 } vk_resource;
 
@@ -53,6 +54,7 @@ typedef struct vk_facts {
     bool past;    /* they were made with rays against the past scene */
     bool sky;     /* the sky, or a map, lights */
     bool given;   /* receivers are given */
+    bool views;   /* shaders gather for views */
     uint32_t lights, blocks_x, blocks_y;
 } vk_facts;
 

@@ -14,9 +14,8 @@ enum {
 };
 
 size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs) {
-    (void)aovs;
-    return 2 * SURFACE_BYTES + (size_t)sets * (RESERVOIR_BYTES + 4) + 2 * COLOUR_BYTES + COVERAGE_BYTES + RAY_BYTES +
-           ANSWER_BYTES + HIT_BYTES;
+    return noc_vk_views_bytes(aovs) + 2 * SURFACE_BYTES + (size_t)sets * (RESERVOIR_BYTES + 4) + 2 * COLOUR_BYTES +
+           COVERAGE_BYTES + RAY_BYTES + ANSWER_BYTES + HIT_BYTES;
 }
 
 static void free_picture(vk_device *d, vk_picture *b) {
@@ -60,6 +59,7 @@ static noc_status resize(vk_view *v, int width, int height, int sets) {
         return status;
     if (b->width != width || b->height != height) {
         free_picture(v->device, b);
+        noc_vk_views_free(v);
         b->width = width;
         b->height = height;
         b->blocks_x = ((uint32_t)width + BLOCK_SIDE - 1) / BLOCK_SIDE;
@@ -196,6 +196,7 @@ static void destroy(vk_view *v) {
     for (int i = 0; i < VK_FRAMES; i++)
         free_flight(d, &v->flights[i]);
     free_picture(d, &v->b);
+    noc_vk_views_free(v);
     noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
     noc_vk_free_buffer(d, &v->scratch);

@@ -11,6 +11,7 @@
 #include "backend/vulkan/schedule.h"
 #include "light/set.h"
 #include "render/backend.h"
+#include "render/frame_views.h"
 #include "render/past.h"
 
 #include <pthread.h>
@@ -188,6 +189,22 @@ typedef struct vk_picture {
     size_t bytes;
 } vk_picture;
 
+/* Views (noc_aov): what shaders gather for them, and the host's copy of what the last complete frame left. Buffers and
+ * arrays are there where a frame has needed them. */
+typedef struct vk_views {
+    noc_views of;
+    uint32_t bits;                     /* VK_VIEW_: gathered by the frame being made */
+    vk_buffer gathered[NOC_AOV_COUNT]; /* as of.made */
+    vk_buffer triangles, labels;       /* that pixels see; of emitters */
+    uint64_t labelled[2];              /* of.labelled, that `labels` is of */
+    gblock *g;                         /* [blocks], as are the next ones */
+    rblock *r;
+    cblock *colour, *picture;
+    uint32_t (*instance)[BLOCK], (*triangle)[BLOCK];
+    uint16_t *emitter; /* lanes that saw one in a frame of the mean */
+    noc_past past;     /* as it was while that frame was made */
+} vk_views;
+
 /* Rays of a step, kept to be traced again. */
 typedef struct vk_kept_rays {
     vk_step step;
@@ -213,6 +230,7 @@ typedef struct vk_view {
     vk_hazards hazards;
     vk_buffer samples, scratch, counters, given;
     vk_steps steps; /* of the stage at work */
+    vk_views views;
     vk_buffer past_lights;
     noc_past past;
     noc_light_sources sources;
@@ -329,9 +347,18 @@ noc_status noc_vk_replay(void *view, noc_trace_floor *floor);
 noc_status noc_vk_keep_rays(vk_view *v, const vk_step *step);
 void noc_vk_forget_rays(vk_view *v);
 
-/* Views that only the CPU backend keeps so far are none here. */
+/* readback.c */
+size_t noc_vk_views_bytes(uint32_t aovs); /* a pixel */
+/* Before a frame that asks for these views: room, and what shaders need; then the commands that empty buffers. */
+noc_status noc_vk_begin_views(vk_view *v, uint32_t aovs);
+void noc_vk_clear_views(vk_view *v, VkCommandBuffer commands);
+/* The frame is submitted: waits for it and keeps its views. past: as it was while the frame was made. */
+noc_status noc_vk_keep_views(vk_view *v, const noc_frame *frame, const noc_past *past);
+void noc_vk_views_free(vk_view *v);
 bool noc_vk_read_aov(void *view, noc_aov aov, float *value);
 void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
+
+/* frame.c */
 void noc_vk_light_stats(void *view, noc_light_stats *stats);
 
 /* host.c: questions that the CPU backend answers */

@@ -186,12 +186,17 @@ void count_one(uint kind, uint at) { atomicAdd(HERE.counters.at[kind * VK_COUNTE
 
 /* ---- rays ---- */
 
-/* Segment i of a pixel, o to o + d; without `on` there is none. */
+/* Segment i of a pixel, o to o + d; without `on` there is none. Shaders of other rays than shadow rays define
+ * UNCOUNTED. */
 void ray_put(place p, uint i, bool on, vec3 o, vec3 d) {
     uint slot = i * HERE.slots + p.slot;
     HERE.answers.at[slot] = on ? VK_ANSWER_WANTED : VK_ANSWER_NONE;
     if (!on)
         return;
+#if !defined(UNCOUNTED)
+    if ((HERE.views & VK_VIEW_RAYS) != 0u)
+        HERE.view_rays.at[p.slot] += 1.0;
+#endif
     uint block = slot / BLOCK;
     for (int k = 0; k < 3; k++) {
         HERE.rays.at[block].o[k][p.lane] = o[k];

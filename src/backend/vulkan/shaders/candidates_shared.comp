@@ -18,6 +18,15 @@ void main() {
         float xi = rng(key_at(p, FRAME.index), DIM_CANDIDATE);
         q = ris_presampled_twice(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
     }
+    if ((HERE.views & VK_VIEW_DENSITY) != 0u && q.w > 0.0) {
+        EXACT float density = float(HERE.draws) / float(HERE.light_count);
+        EXACT float by_power = float(HERE.draws);
+        if (HERE.by_power != 0u) {
+            by_power = by_power / alias_load(q.light).inverse;
+            density = by_power;
+        }
+        HERE.view_density.at[p.slot] = density;
+    }
     reservoir_put(HERE.target, p.block, p.lane, q);
     HERE.target_visible.at[p.slot] = 0u;
 }

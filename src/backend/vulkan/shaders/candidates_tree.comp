@@ -29,6 +29,18 @@ pick pick_load(int i) {
 
 #include "core/given.h"
 
+/* How often the chosen light is expected among the candidates; -1: it is none of them. */
+float expected(uint light) {
+    for (uint i = 0u; i < HERE.draws; i++) {
+        pick drawn = pick_load(int(i));
+        if (drawn.light == light && drawn.inverse > 0.0) {
+            EXACT float density = float(HERE.draws) / drawn.inverse;
+            return density;
+        }
+    }
+    return -1.0;
+}
+
 void main() {
     if (!in_grid())
         return;
@@ -38,6 +50,8 @@ void main() {
         surf_ = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
         key_ = key_at(p, FRAME.index);
         q = ris_given(surf_, key_, int(HERE.draws));
+        if ((HERE.views & VK_VIEW_DENSITY) != 0u && q.w > 0.0)
+            HERE.view_density.at[p.slot] = expected(q.light);
     }
     reservoir_put(HERE.target, p.block, p.lane, q);
     HERE.target_visible.at[p.slot] = 0u;

@@ -19,6 +19,8 @@ void main() {
         r.material = floatBitsToUint(HERE.given.at[at + 6u]);
     }
     receiver_put(HERE.surfaces, p.block, p.lane, r, 0u);
+    if ((HERE.views & VK_VIEW_TRIANGLES) != 0u)
+        HERE.view_triangles.at[p.slot] = VK_NO_TRIANGLE;
     if (HERE.instanced != 0u)
         HERE.instance.at[p.slot] = NO_INSTANCE;
 }

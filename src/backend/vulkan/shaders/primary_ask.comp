@@ -1,6 +1,7 @@
 #version 460
 /* A ray of the camera for each pixel. */
 #extension GL_GOOGLE_include_directive : require
+#define UNCOUNTED
 #include "bridge.glsl"
 #include "pixel.glsl"
 

@@ -33,11 +33,11 @@ void main() {
         return;
     place p = my_place();
     uint b = p.slot / BLOCK, l = p.lane, number = HERE.hits.at[b].triangle[l];
-    uint instance = NO_INSTANCE, texel = 0u;
+    uint instance = NO_INSTANCE, texel = 0u, triangle = VK_NO_TRIANGLE;
     receiver r = receiver_none();
     if (p.inside && number != NO_HIT) {
         tlas_entry e = HERE.entries.at[HERE.hits.at[b].entry[l]];
-        uint triangle = e.order.at[number];
+        triangle = e.order.at[number];
         uvec3 vertex = uvec3(HERE.indices.at[3u * triangle], HERE.indices.at[3u * triangle + 1u],
                              HERE.indices.at[3u * triangle + 2u]);
         ray_hit h;
@@ -63,6 +63,8 @@ void main() {
             texel = texel_of(h, r, p, vertex, placed, m);
     }
     receiver_put(HERE.surfaces, p.block, l, r, texel);
+    if ((HERE.views & VK_VIEW_TRIANGLES) != 0u)
+        HERE.view_triangles.at[p.slot] = triangle;
     if (HERE.instanced != 0u)
         HERE.instance.at[p.slot] = instance;
 }

@@ -4,6 +4,7 @@
 #include "bridge.glsl"
 #include "pixel.glsl"
 #include "reference.glsl"
+#include "views.glsl"
 
 void main() {
     if (!in_grid())
@@ -20,7 +21,10 @@ void main() {
             continue;
         uint id = HERE.scratch.at[entry_word(entry, 0u)];
         v3 at = reference_place(key_at(p, FRAME.index), id);
-        c = add_colour(c, sample_shade(s, reservoir(id, at.x, at.y, w, 0.0, 0.0), light_load(id)), p.slot);
+        reservoir q = reservoir(id, at.x, at.y, w, 0.0, 0.0);
+        vec3 light = sample_shade(s, q, light_load(id));
+        note_sample(p, s, q, light_load(id), light);
+        c = add_colour(c, light, p.slot);
     }
     colour_put(HERE.colour, p, c);
 }

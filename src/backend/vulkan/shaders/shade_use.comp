@@ -5,6 +5,7 @@
 #include "pixel.glsl"
 #include "core/shading.h"
 #include "surfaces.glsl"
+#include "views.glsl"
 
 void main() {
     if (!in_grid())
@@ -16,6 +17,8 @@ void main() {
         on = HERE.answers.at[p.slot] != VK_ANSWER_WANTED;
     if (!on)
         return;
-    vec3 light = sample_shade(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), q, light_load(q.light));
+    surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
+    vec3 light = sample_shade(s, q, light_load(q.light));
+    note_sample(p, s, q, light_load(q.light), light);
     colour_put(HERE.colour, p, add_colour(colour_at(HERE.colour, p), light, p.slot));
 }

@@ -5,6 +5,7 @@
 #include "pixel.glsl"
 #include "core/shading.h"
 #include "surfaces.glsl"
+#include "views.glsl"
 
 void main() {
     if (!in_grid())
@@ -16,6 +17,10 @@ void main() {
     vec3 way = vec3(HERE.rays.at[p.block].d[0][p.lane], HERE.rays.at[p.block].d[1][p.lane],
                     HERE.rays.at[p.block].d[2][p.lane]);
     EXACT float share = 1.0 / float(answer >> 8);
-    vec3 light = sky_shade(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), way, share);
+    surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
+    vec3 light = sky_shade(s, way, share);
+    if (measures(p))
+        add_lux(p, sky_lux(s, way, share));
+    note_sky(p, light);
     colour_put(HERE.colour, p, add_colour(colour_at(HERE.colour, p), light, p.slot));
 }
