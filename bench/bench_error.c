@@ -32,6 +32,8 @@ static const variant variants[] = {
     { "restir biased", NOC_METHOD_RESTIR, NOC_BIAS_BIASED },
     { "restir mis", NOC_METHOD_RESTIR, NOC_BIAS_MIS },
     { "restir mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, true },
+    { "restir counted", NOC_METHOD_RESTIR, NOC_BIAS_COUNTED },
+    { "restir counted + rays", NOC_METHOD_RESTIR, NOC_BIAS_COUNTED, true },
     { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true },
     { "spatial pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true },
@@ -44,7 +46,7 @@ static const variant variants[] = {
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, .candidates = NOC_CANDIDATES_LISTS },
     { "spatial p. + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, NOC_CANDIDATES_LISTS },
 };
-_Static_assert(NOC_COUNT(variants) == NOC_CANDIDATES_COUNT + 10, "ris of every picker, and the other methods");
+_Static_assert(NOC_COUNT(variants) == NOC_CANDIDATES_COUNT + 12, "ris of every picker, and the other methods");
 
 static uint64_t mix(uint64_t h, const void *data, size_t size) {
     const unsigned char *p = data;

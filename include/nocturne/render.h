@@ -19,7 +19,14 @@ typedef enum noc_method {
     NOC_METHOD_HEADLIGHT,
     NOC_METHOD_COUNT
 } noc_method;
-typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
+/* Weights of a combination of reservoirs: docs/estimator.md, "Reservoirs and reuse". */
+typedef enum noc_bias {
+    NOC_BIAS_BIASED,   /* 1 / M: Bitterli 2020, Algorithm 4 */
+    NOC_BIAS_MIS,      /* balance heuristic */
+    NOC_BIAS_PAIRWISE, /* balance heuristic between the pixel's own reservoir and one other at a time */
+    NOC_BIAS_COUNTED,  /* 1 / Z, M counted over those that could have made the sample: Bitterli 2020, Algorithm 6 */
+    NOC_BIAS_COUNT
+} noc_bias;
 /* Where light candidates come from: docs/estimator.md, "Pickers". */
 typedef enum noc_candidates {
     NOC_CANDIDATES_UNIFORM,
@@ -125,7 +132,7 @@ typedef struct noc_render_params {
     int passes;     /* spatial passes, 1..4 */
     double history; /* cap of M as a multiple of a frame's candidates, 0..1000 */
     noc_bias bias;
-    /* mis, pairwise: visibility in the target of the combination, which makes it unbiased. Not
+    /* mis, pairwise, counted: visibility in the target of the combination, which makes it unbiased. Not
      * needed, and not traced, without visibility_reuse: targets are unshadowed then */
     bool bias_rays;
     bool visibility_reuse; /* one shadow ray after the candidates: occluded ones are not reused (ris, restir) */

@@ -203,25 +203,46 @@ FN combined reuse_pairwise(CTX surf s, reservoir own, real m_n, u32 key, u32 dim
     return c;
 }
 
-/* The balance rule's, or by 1/M. */
-FN combined reuse_weighed(CTX reservoir own, reservoir_builder held, int k) {
-    real source = K(1.0f);
-    real all = held.m;
-    if (FRAME.bias == BIAS_MIS) {
-        source = held.p;
-        EXACT real mine = own.m * held.p;
-        all = mine;
-        for (int i = 0; i < k; i++) {
-            if (!neighbour_some(PASS i))
-                continue;
-            real p = neighbour_answer(PASS i);
-            EXACT real sum = all + neighbour_resv(PASS i).m * p;
+/* Sum of the sources' M, each times its target of the sample held: the balance rule's. */
+FN real reuse_balance(CTX reservoir own, reservoir_builder held, int k) {
+    EXACT real all = own.m * held.p;
+    for (int i = 0; i < k; i++)
+        if (neighbour_some(PASS i)) {
+            EXACT real sum = all + neighbour_resv(PASS i).m * neighbour_answer(PASS i);
             all = sum;
-            source = sel(held.tag == K(F32(i + 1)), p, source);
         }
-    }
+    return all;
+}
+
+/* Sum of M over the sources whose target of the sample held is not 0. The pixel's own is not, or nothing is held. */
+FN real reuse_count(CTX reservoir own, int k) {
+    real all = own.m;
+    for (int i = 0; i < k; i++)
+        if (neighbour_some(PASS i))
+            all = all + sel(neighbour_answer(PASS i) > K(0.0f), neighbour_resv(PASS i).m, K(0.0f));
+    return all;
+}
+
+/* Target of the sample held at its source. */
+FN real reuse_source(CTX reservoir_builder held, int k) {
+    real source = held.p;
+    for (int i = 0; i < k; i++)
+        if (neighbour_some(PASS i))
+            source = sel(held.tag == K(F32(i + 1)), neighbour_answer(PASS i), source);
+    return source;
+}
+
+/* One sample chosen among all by M, and then weighed. */
+FN combined reuse_weighed(CTX reservoir own, reservoir_builder held, int k) {
+    real scale = K(0.0f);
+    if (FRAME.bias == BIAS_MIS)
+        scale = mis_scale(reuse_source(PASS held, k), reuse_balance(PASS own, held, k));
+    else if (FRAME.bias == BIAS_COUNTED)
+        scale = mis_scale(K(1.0f), reuse_count(PASS own, k));
+    else
+        scale = mis_scale(K(1.0f), held.m);
     combined c;
-    c.r = builder_end(held, mis_scale(source, all));
+    c.r = builder_end(held, scale);
     c.own = held.tag == K(0.0f);
     return c;
 }

@@ -40,6 +40,7 @@ typedef struct frame_camera frame_camera;
 #define BIAS_BIASED 0u
 #define BIAS_MIS 1u
 #define BIAS_PAIRWISE 2u
+#define BIAS_COUNTED 3u
 
 struct frame_constants {
     frame_camera camera;

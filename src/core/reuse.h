@@ -3,7 +3,9 @@
  * last frame.
  *
  * - biased (Bitterli 2020, Alg. 4): w_i = M_i p_q(x_i) W_i, W = w_sum / (p_q(y) sum M_j).
- * - mis (Bitterli 2020, Alg. 6): the same weights, W = w_sum / p_q(y) * p_s(y) / sum_j M_j p_j(y), y from s.
+ * - counted (Bitterli 2020, Alg. 6; Hlavova 2025, Alg. 6): the same weights, W = w_sum / (p_q(y) Z), where Z is the sum
+ *   of M_j over those pixels that could have made y: p_j(y) > 0.
+ * - mis (Bitterli 2020, section 4.3): the same weights, W = w_sum / p_q(y) * p_s(y) / sum_j M_j p_j(y), y from s.
  * - pairwise: w_i = m_i p_q(x_i) W_i with m_i = s_i a_i(x_i), m_c = sum_i s_i (1 - a_i(x_c)), where s_i = M_i / M_N is
  *   the neighbour's share of M_N = sum of the neighbours' M and a_i(x) = M_N p_i(x) / (M_N p_i(x) + M_c p_q(x)): the
  *   balance heuristic between c and each neighbour in turn. sum m = 1 for every x, and m_i = M_i / M where all targets

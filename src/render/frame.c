@@ -86,7 +86,7 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
 }
 
 _Static_assert((int)BIAS_BIASED == NOC_BIAS_BIASED && (int)BIAS_MIS == NOC_BIAS_MIS &&
-                   (int)BIAS_PAIRWISE == NOC_BIAS_PAIRWISE,
+                   (int)BIAS_PAIRWISE == NOC_BIAS_PAIRWISE && (int)BIAS_COUNTED == NOC_BIAS_COUNTED,
                "a frame's bias is a noc_bias");
 
 void noc_make_frame_constants(const noc_render_params *p, uint32_t frame, bool history, frame_constants *out) {

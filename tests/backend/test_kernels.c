@@ -94,12 +94,12 @@ static void random_reservoirs(rblock *r) {
 
 /* Everything the kernels leave behind, for one random world. */
 typedef struct trace {
-    rblock candidates, combined[3];
-    held_block held[3];
+    rblock candidates, combined[NOC_BIAS_COUNT];
+    held_block held[NOC_BIAS_COUNT];
     rayblock segments, sky;
     cblock shaded, reference;
-    float p_at[3][MAX_NEIGHBOURS][BLOCK];
-    uint32_t asked[3][MAX_NEIGHBOURS], visible[3], x[BLOCK], y[BLOCK];
+    float p_at[NOC_BIAS_COUNT][MAX_NEIGHBOURS][BLOCK];
+    uint32_t asked[NOC_BIAS_COUNT][MAX_NEIGHBOURS], visible[NOC_BIAS_COUNT], x[BLOCK], y[BLOCK];
     uint32_t front, entries[BLOCK], dropped;
     neighbour fetched[8];
 } trace;
@@ -162,7 +162,7 @@ static void shade_reference(const kernels *k, const world *w, const gblock *g, t
 
 /* Every way to combine, with random answers. */
 static void combine_all(const kernels *k, world *w, combining *b, trace *t) {
-    for (uint32_t bias = 0; bias < 3; bias++) {
+    for (uint32_t bias = 0; bias < NOC_BIAS_COUNT; bias++) {
         w->frame.bias = bias;
         b->visible = 0xbeef;
         b->eye = bias == BIAS_PAIRWISE ? &w->frame.previous : &w->frame.camera;
@@ -304,7 +304,7 @@ static void pixels_do_not_depend_on_their_block(void **state) {
             float m = 0;
             for (int i = 0; i < one.k; i++)
                 m += one.n[i].r.m[l];
-            for (int bias = 0; bias < 3; bias++) {
+            for (int bias = 0; bias < NOC_BIAS_COUNT; bias++) {
                 assert_same_lane(&together.combined[bias], &apart.combined[bias], l);
                 assert_int_equal(together.visible[bias] >> l & 1, apart.visible[bias] >> l & 1);
                 if (m == 0)

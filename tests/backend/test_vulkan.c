@@ -59,6 +59,8 @@ static void plans_have_the_same_bits(void **state) {
         { "biased", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_BIASED, true, true, true, 1 },
         { "mis", NOC_METHOD_RESTIR, NOC_CANDIDATES_POWER, NOC_BIAS_MIS, true, true, true, 2 },
         { "mis, no bias rays", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_MIS, false, false, true, 1 },
+        { "counted", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_COUNTED, true, true, true, 2 },
+        { "counted, no bias rays", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_COUNTED, false, true, true, 1 },
         { "pairwise", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, true, 1 },
         { "pairwise, two passes", NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, NOC_BIAS_PAIRWISE, true, true, true, 2 },
         { "pairwise, no bias rays", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, false, true, true,
@@ -203,7 +205,9 @@ static void edits_have_the_same_bits(void **state) {
     static const struct {
         const char *name;
         noc_bias bias;
-    } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE }, { "edits, mis", NOC_BIAS_MIS } };
+    } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE },
+                 { "edits, mis", NOC_BIAS_MIS },
+                 { "edits, counted", NOC_BIAS_COUNTED } };
     noc_log *log = noc_log_create(NULL);
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     (void)state;

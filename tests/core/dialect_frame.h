@@ -147,7 +147,7 @@ FN void combination(CTX u32 item, int slot, u32 key, surf s, reservoir own) {
     put_real(PASS item, slot + 13, sel(reuse_asks(held, 1, p), p, K(0.0f)));
 }
 
-/* Slots 11 to 60. */
+/* Slots 11 to 60 and 121 to 134. */
 FN void combinations(CTX u32 item, u32 key, surf s) {
     reservoir own = reservoir_cap(ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 8), rng(key, KU(4502u)) * K(12.0f));
     combination(PASS item, FRAME_FIRST + 11, key, s, own);
@@ -155,6 +155,9 @@ FN void combinations(CTX u32 item, u32 key, surf s) {
     combination(PASS item, FRAME_FIRST + 25, key, s, own);
     dialect_frame.bias = BIAS_PAIRWISE;
     combination(PASS item, FRAME_FIRST + 39, key, s, own);
+    dialect_frame.bias = BIAS_COUNTED;
+    combination(PASS item, FRAME_FIRST + 121, key, s, own);
+    dialect_frame.bias = BIAS_PAIRWISE;
     put_resv(PASS item, FRAME_FIRST + 53, reservoir_blocked(own, rng(key, KU(4500u)) < K(0.5f)));
     put_u32(PASS item, FRAME_FIRST + 59, flag_of(resolve_asks(own, rng(key, KU(4501u)) < K(0.5f))));
     put_real(PASS item, FRAME_FIRST + 60, neighbour_answer(PASS 0));

@@ -4,7 +4,7 @@
 
 #define KERNEL_SLOTS 203 /* dialect_kernel.h */
 #define FRAME_FIRST KERNEL_SLOTS
-#define FRAME_SLOTS 121 /* dialect_frame.h */
+#define FRAME_SLOTS 135 /* dialect_frame.h */
 #define INFLUENCE_FIRST (FRAME_FIRST + FRAME_SLOTS)
 #define INFLUENCE_SLOTS 17 /* dialect_influence.h */
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)

@@ -129,6 +129,7 @@ static const struct {
     { FRAME_FIRST + 112, "sky_shade, map" },
     { FRAME_FIRST + 115, "sky_behind, map" },
     { FRAME_FIRST + 118, "headlight_shade" },
+    { FRAME_FIRST + 121, "reuse, counted" },
     { INFLUENCE_FIRST, "influence_from_list" },
     { INFLUENCE_FIRST + 1, "influence_inverse" },
     { INFLUENCE_FIRST + 2, "presample_at, influence_listed, influence_sets" },
@@ -228,8 +229,8 @@ static const struct {
     { PRIMARY_FIRST + 21, "receiver_sel" },
 };
 
-static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
-                                      37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90, 96, 110 };
+static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23,  25,  31,  37, 39,
+                                      45, 51, 53, 59, 62, 64, 68, 80, 90, 96, 110, 121, 127, 133 };
 static const int list_integers[] = { 2,  11, 12, 13, 14, 15, 20, 21, 35,  36,  53,  54,  56, 57,
                                      58, 61, 62, 67, 73, 74, 75, 89, 101, 107, 108, 109, 110 };
 

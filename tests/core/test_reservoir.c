@@ -199,7 +199,7 @@ static reservoir initial(const toy *t, int pixel, dice *d) {
     return r;
 }
 
-typedef enum mode { BIASED, MIS, PAIRWISE, CARELESS } mode;
+typedef enum mode { BIASED, MIS, PAIRWISE, CARELESS, COUNTED } mode;
 
 /* Target of x at a pixel as the combination knows it: with visibility there where bias rays are on. */
 static float target_at(const toy *t, int pixel, uint32_t x, bool rays) {
@@ -231,15 +231,15 @@ static reservoir combine(const toy *t, const reservoir *r, mode how, bool rays, 
         st = builder_add(st, r[i].light, 0, 0, p, w, how == CARELESS && w == 0 ? 0 : r[i].m, (float)i,
                          (float)uniform(d, 0, 0.99999994));
     }
-    if (how != MIS)
+    if (how != MIS && how != COUNTED)
         return builder_end(st, mis_scale(1, st.m));
     float all = 0, held = 0;
     for (int i = 0; i < PIXELS; i++) {
         float p = target_at(t, i, st.light, rays);
-        all += r[i].m * p;
+        all += how == COUNTED ? (p > 0 ? r[i].m : 0) : r[i].m * p;
         held = st.tag == (float)i ? p : held;
     }
-    return builder_end(st, mis_scale(held, all));
+    return builder_end(st, mis_scale(how == COUNTED ? 1 : held, all));
 }
 
 /* Mean of f W over many combinations; twice: what one combination leaves is capped and meets new neighbours. */
@@ -279,8 +279,10 @@ static void test_reuse_without_shadows(void **state) {
     expect("1/M", &plain, BIASED, false, false, false);
     expect("1/M without empty neighbours", &plain, CARELESS, false, false, false);
     expect("mis", &plain, MIS, false, false, true);
+    expect("counted", &plain, COUNTED, false, false, true);
     expect("pairwise", &plain, PAIRWISE, false, false, true);
     expect("mis, twice", &plain, MIS, false, true, true);
+    expect("counted, twice", &plain, COUNTED, false, true, true);
     expect("pairwise, twice", &plain, PAIRWISE, false, true, true);
 }
 
@@ -289,6 +291,9 @@ static void test_reuse_with_shadows(void **state) {
     expect("shadows, 1/M", &shadowed, BIASED, false, false, false);
     expect("shadows, mis without bias rays", &shadowed, MIS, false, false, false);
     expect("shadows, pairwise without bias rays", &shadowed, PAIRWISE, false, false, false);
+    expect("shadows, counted without bias rays", &shadowed, COUNTED, false, false, false);
+    expect("shadows, counted with bias rays", &shadowed, COUNTED, true, false, true);
+    expect("shadows, counted with bias rays, twice", &shadowed, COUNTED, true, true, true);
     expect("shadows, mis with bias rays", &shadowed, MIS, true, false, true);
     expect("shadows, pairwise with bias rays", &shadowed, PAIRWISE, true, false, true);
     expect("shadows, mis with bias rays, twice", &shadowed, MIS, true, true, true);

@@ -80,6 +80,7 @@ static const config configs[] = {
     { "pairwise unshadowed, uniform", RESTIR(PAIRWISE) },
     { "mis + rays, uniform", RESTIR(MIS), .rays = true, .reuse = true },
     { "mis + rays, lists of 12", RESTIR(MIS), .rays = true, .reuse = true, .list = 12 },
+    { "counted + rays, uniform", RESTIR(COUNTED), .rays = true, .reuse = true },
 };
 
 static void unbiased_on_the_move(void **state) {

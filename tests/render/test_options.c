@@ -271,7 +271,7 @@ static void wrong_params_are_told(void **state) {
         { "shadow-rays", 9, "render: shadow_rays is 9, must be in 1..8" },
         { "width", 1 << 30, "render: width is 1073741824, must be in 1..32768 px" },
         { "sky", -0.5, "render: sky is -0.5, must be in 0..1000000 cd/m2" },
-        { "bias", 3, "render: bias is 3, must be in 0..2, of biased|mis|pairwise" },
+        { "bias", 4, "render: bias is 4, must be in 0..3, of biased|mis|pairwise|counted" },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         render = noc_render_default_params();
