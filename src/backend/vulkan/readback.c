@@ -146,6 +146,16 @@ static noc_status read_blocks(vk_view *v, const vk_buffer *from, void *to, size_
     return noc_vk_read(v->device, from, 0, to, blocks_of(&v->b) * bytes);
 }
 
+/* Shaders count in whole numbers. */
+static void count_in_floats(float (*rays)[BLOCK], size_t blocks) {
+    for (size_t i = 0; i < blocks; i++)
+        for (int l = 0; l < BLOCK; l++) {
+            uint32_t count;
+            memcpy(&count, &rays[i][l], sizeof(count));
+            rays[i][l] = (float)count;
+        }
+}
+
 /* What passes of the CPU backend note while they run. */
 static noc_status read_gathered(vk_view *v) {
     vk_views *w = &v->views;
@@ -154,6 +164,8 @@ static noc_status read_gathered(vk_view *v) {
         if (w->bits & gathered[i].bit)
             status = read_blocks(v, &w->gathered[gathered[i].aov], w->of.made[gathered[i].aov],
                                  noc_views_made_entries(gathered[i].aov) * sizeof(float[BLOCK]));
+    if (status == NOC_OK && w->bits & VK_VIEW_RAYS)
+        count_in_floats(w->of.made[NOC_AOV_RAYS], blocks_of(&v->b));
     if (status != NOC_OK || !(w->bits & VK_VIEW_TRIANGLES))
         return status;
     status = read_blocks(v, &w->triangles, w->triangle, sizeof(*w->triangle));

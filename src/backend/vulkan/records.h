@@ -62,7 +62,7 @@ struct vk_instance_record {
     ADDRESS(SampleRows, samples)                                                                                       \
     ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
     ADDRESS(Words, counters)                                                                                           \
-    ADDRESS(Floats, view_rays) /* what views gather, as noc_views.made has it */                                       \
+    ADDRESS(Words, view_rays) /* a count; the others as noc_views.made has what views gather */                        \
     ADDRESS(Floats, view_density)                                                                                      \
     ADDRESS(Floats, view_lux)                                                                                          \
     ADDRESS(Floats, view_group)                                                                                        \

@@ -195,7 +195,7 @@ void ray_put(place p, uint i, bool on, vec3 o, vec3 d) {
         return;
 #if !defined(UNCOUNTED)
     if ((HERE.views & VK_VIEW_RAYS) != 0u)
-        HERE.view_rays.at[p.slot] += 1.0;
+        atomicAdd(HERE.view_rays.at[p.block * BLOCK + p.lane], 1u);
 #endif
     uint block = slot / BLOCK;
     for (int k = 0; k < 3; k++) {
