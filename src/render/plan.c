@@ -3,8 +3,8 @@
 #define B(buffer) (1u << NOC_BUFFER_##buffer)
 
 const noc_buffer_row noc_buffers[NOC_BUFFER_COUNT] = {
-    [NOC_BUFFER_SURFACES] = { "surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_ON, 36 },
-    [NOC_BUFFER_PREVIOUS] = { "previous surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_FRAME, 36 },
+    [NOC_BUFFER_SURFACES] = { "surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_ON, 40 },
+    [NOC_BUFFER_PREVIOUS] = { "previous surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_FRAME, 40 },
     [NOC_BUFFER_LIST] = { "light list", NOC_DOMAIN_TILE, NOC_LIVES_TILE, 0 },
     [NOC_BUFFER_SHARED_RAYS] = { "shared rays", NOC_DOMAIN_TILE, NOC_LIVES_TILE, 0 },
     [NOC_BUFFER_RESERVOIRS] = { "reservoirs", NOC_DOMAIN_PIXEL, NOC_LIVES_ON, 24 },

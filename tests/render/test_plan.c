@@ -2,6 +2,8 @@
 #include "../test.h"
 #include "each_plan.h"
 
+#include "core/blocks.h"
+
 /* A buffer, or a set of reservoirs in it. */
 static uint32_t part(const noc_stage *s, uint32_t bits) {
     uint32_t out = bits & ~(1u << NOC_BUFFER_RESERVOIRS | 1u << NOC_BUFFER_SOURCE);
@@ -96,6 +98,25 @@ static void light_is_shaded_once(void **state) {
     each_plan(check_shading);
 }
 
+/* A pixel's bytes are those of the blocks that passes work on. */
+static void buffers_are_as_large_as_their_records(void **state) {
+    static const struct {
+        noc_buffer buffer;
+        size_t bytes; /* a block */
+    } records[] = {
+        { NOC_BUFFER_SURFACES, sizeof(gblock) },   { NOC_BUFFER_PREVIOUS, sizeof(gblock) },
+        { NOC_BUFFER_RESERVOIRS, sizeof(rblock) }, { NOC_BUFFER_SOURCE, sizeof(rblock) },
+        { NOC_BUFFER_COLOUR, sizeof(cblock) },     { NOC_BUFFER_PICTURE, sizeof(cblock) },
+    };
+    size_t pixels = 0;
+    (void)state;
+    for (int i = 0; i < NOC_BUFFER_COUNT; i++)
+        pixels += noc_buffers[i].domain == NOC_DOMAIN_PIXEL;
+    assert_int_equal(pixels, NOC_COUNT(records));
+    for (size_t i = 0; i < NOC_COUNT(records); i++)
+        assert_int_equal((size_t)noc_buffers[records[i].buffer].bytes * BLOCK, records[i].bytes);
+}
+
 static void names_are_told_apart(void **state) {
     (void)state;
     for (int i = 0; i < NOC_PASS_COUNT; i++)
@@ -111,6 +132,7 @@ int main(void) {
         cmocka_unit_test(stages_may_run_tile_by_tile),
         cmocka_unit_test(light_is_shaded_once),
         cmocka_unit_test(names_are_told_apart),
+        cmocka_unit_test(buffers_are_as_large_as_their_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
