@@ -1,4 +1,4 @@
-/* core/ as rankings read it: one light and one point at a time. */
+/* core/ as rankings and views read it: one light and one point at a time. */
 #ifndef NOC_RENDER_INFLUENCE_CORE_H
 #define NOC_RENDER_INFLUENCE_CORE_H
 

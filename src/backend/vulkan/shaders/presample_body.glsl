@@ -25,7 +25,8 @@ void main() {
     for (uint i = t; i < n; i += 256u) {
         presample_pick k = draw_sample(key, i, n);
         uint word = plain_[i / 32u], bit = 1u << (i & 31u);
-        uint rank = presample_rank((word & bit) != 0u, i, before_[i / 32u] + bitCount(word & (bit - 1u)), before_[words]);
+        uint before = before_[i / 32u] + bitCount(word & (bit - 1u));
+        uint rank = presample_rank((word & bit) != 0u, i, before, before_[words]);
         uint at = presample_turned(key, rank), row = subset * HERE.draws + at / BLOCK, l = at % BLOCK;
         presample_put(row, l, presample_of(light_load(k.light), unit_low(k.place), unit_high(k.place)));
         HERE.samples.at[row].light[l] = k.light;

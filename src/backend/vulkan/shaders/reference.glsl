@@ -1,4 +1,5 @@
-/* The reference method (core/reference.h) in a band of the picture: chunks' luminances, then entries, in its scratch. */
+/* The reference method (core/reference.h) in a band of the picture: luminances of chunks, then entries, in its
+ * scratch. */
 #include "core/reference.h"
 #include "core/shading.h"
 #include "surfaces.glsl"
