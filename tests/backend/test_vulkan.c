@@ -6,9 +6,10 @@
 
 #include <nocturne/nocturne.h>
 
+static noc_log *messages; /* of all tests */
+
 static noc_scene *builtin(const char *name) {
-    noc_log *log = noc_log_create(NULL);
-    noc_scene *scene = noc_scene_create(log);
+    noc_scene *scene = noc_scene_create(messages);
     noc_builtin_params params = noc_builtin_default_params();
     assert_int_equal(noc_scene_add_builtin(scene, name, &params), NOC_OK);
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
@@ -67,12 +68,11 @@ static void plans_have_the_same_bits(void **state) {
           1 },
     };
     noc_scene *scene = builtin("mess");
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera;
     twins t;
     (void)state;
     assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 62.0 / 45, &camera), NOC_OK);
-    if (!open_twins(scene, true, log, &t))
+    if (!open_twins(scene, true, messages, &t))
         skip();
     for (size_t i = 0; i < NOC_COUNT(plans); i++) {
         noc_render_params p = noc_render_default_params();
@@ -178,11 +178,10 @@ static noc_render_params all_kinds_params(noc_method method, bool map) {
 static void all_kinds_have_the_same_bits(void **state) {
     int car;
     noc_scene *scene = all_kinds(&car);
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     twins t;
     (void)state;
-    if (!open_twins(scene, true, log, &t))
+    if (!open_twins(scene, true, messages, &t))
         skip();
     noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
     expect_same_bits(&t, &camera, &p, 3, "textures, instances, profiles");
@@ -208,14 +207,13 @@ static void edits_have_the_same_bits(void **state) {
     } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE },
                  { "edits, mis", NOC_BIAS_MIS },
                  { "edits, counted", NOC_BIAS_COUNTED } };
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     (void)state;
     for (size_t row = 0; row < NOC_COUNT(rows); row++) {
         int car, added = -1;
         noc_scene *scene = all_kinds(&car);
         twins t;
-        if (!open_twins(scene, true, log, &t))
+        if (!open_twins(scene, true, messages, &t))
             skip();
         noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
         p.bias = rows[row].bias;
@@ -307,7 +305,6 @@ static void views_have_the_same_bits(void **state) {
         { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, OF_RESERVOIRS },
         { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, ~(uint32_t)OF_SURFACES },
     };
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     (void)state;
     for (size_t row = 0; row < NOC_COUNT(rows); row++) {
@@ -319,7 +316,7 @@ static void views_have_the_same_bits(void **state) {
         if (map)
             assert_int_equal(noc_scene_set_environment(scene, map), NOC_OK);
         noc_image_destroy(map);
-        if (!open_twins(scene, true, log, &t))
+        if (!open_twins(scene, true, messages, &t))
             skip();
         noc_render_params p = all_kinds_params(rows[row].method, rows[row].map);
         p.candidates = rows[row].candidates;
@@ -344,13 +341,12 @@ static void views_have_the_same_bits(void **state) {
 /* Walls of a city with their classes; and a picture does not change by the views that are asked for. */
 static void pictures_do_not_change_by_views(void **state) {
     noc_scene *scene = builtin("city");
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera;
     noc_image *image[2];
     twins t;
     (void)state;
     assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &camera), NOC_OK);
-    if (!open_twins(scene, true, log, &t))
+    if (!open_twins(scene, true, messages, &t))
         skip();
     noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
     for (int i = 0; i < 2; i++) {
@@ -375,12 +371,11 @@ static void pictures_do_not_change_by_views(void **state) {
 /* Frames with rays of each machine's own: the pictures agree but for what grazes an edge. */
 static void rays_agree(void **state) {
     noc_scene *scene = builtin("mess");
-    noc_log *log = noc_log_create(NULL);
     noc_camera camera;
     twins t;
     (void)state;
     assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &camera), NOC_OK);
-    if (!open_twins(scene, false, log, &t))
+    if (!open_twins(scene, false, messages, &t))
         skip();
     noc_render_params p = noc_render_default_params();
     p.width = p.height = 128;
@@ -424,16 +419,14 @@ static void *render_frames(void *user) {
 
 /* Views of one scene in threads of their own have the pictures that each has alone. */
 static void views_are_independent(void **state) {
-    noc_log *log = noc_log_create(NULL);
-    noc_device *device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, log);
+    noc_device *device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, messages);
     noc_image *images[4];
     pthread_t threads[2];
     job jobs[2];
     int car;
     (void)state;
     if (!device) {
-        print_message("# skipped: %s\n", noc_log_last_error(log));
-        noc_log_destroy(log);
+        print_message("# skipped: %s\n", noc_log_last_error(messages));
         skip();
     }
     noc_scene *scene = all_kinds(&car);
@@ -461,7 +454,6 @@ static void views_are_independent(void **state) {
         noc_image_destroy(images[i]);
     noc_scene_destroy(scene);
     noc_device_destroy(device);
-    noc_log_destroy(log);
 }
 
 int main(void) {
@@ -471,5 +463,8 @@ int main(void) {
         cmocka_unit_test(edits_have_the_same_bits), cmocka_unit_test(rays_agree),
         cmocka_unit_test(views_are_independent),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    messages = noc_log_create(NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    noc_log_destroy(messages);
+    return failed;
 }
