@@ -125,23 +125,26 @@ static inline noc_status answer_by_cpu(void *user, const vk_step *step) {
     return NOC_OK;
 }
 
-/* False where there is no device that traces rays, after saying so. */
-static inline bool open_twins(const noc_scene *scene, bool same_rays, noc_log *log, twins *t) {
-    *t = (twins){ .cpu_device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_EMBREE }, log),
-                  .device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, log) };
-    assert_non_null(t->cpu_device);
-    if (!t->device) {
+/* Returns true if a Vulkan device traces rays here; says why not. */
+static inline bool has_vulkan(noc_log *log) {
+    noc_device_info info;
+    bool has = noc_device_find(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, &info, log) == NOC_OK;
+    if (!has)
         print_message("# skipped: %s\n", noc_log_last_error(log));
-        noc_device_destroy(t->cpu_device);
-        return false;
-    }
+    return has;
+}
+
+/* There must be a Vulkan device. */
+static inline void open_twins(const noc_scene *scene, bool same_rays, noc_log *log, twins *t) {
+    *t = (twins){ .cpu_device = noc_device_create(NULL, log),
+                  .device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, log) };
+    assert_true(t->cpu_device && t->device);
     t->cpu = noc_view_create(t->cpu_device, scene);
     t->gpu = noc_view_create(t->device, scene);
     assert_true(t->cpu && t->gpu);
     t->answerer = (vk_answerer){ answer_by_cpu, t };
     if (same_rays)
         gpu_of(t)->answerer = &t->answerer;
-    return true;
 }
 
 static inline void close_twins(twins *t) {
