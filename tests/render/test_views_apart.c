@@ -152,7 +152,7 @@ static bool stop_late(void *user, const char *what, double done) {
     return --*(int *)user > 0;
 }
 
-static uint64_t memory_of(const noc_view *r) {
+static uint64_t memory_of(noc_view *r) {
     noc_frame_stats stats;
     noc_view_get_stats(r, &stats);
     return stats.memory_bytes;
