@@ -6,6 +6,7 @@
 #include "backend/cpu/kernels.h"
 #include "backend/cpu/tracer.h"
 #include "backend/parts.h"
+#include "core/presample_limits.h"
 #include "light/learned.h"
 #include "light/set.h"
 #include "render/emitter_coverage.h"
@@ -168,6 +169,7 @@ typedef struct cpu_view {
     presample_row *samples;            /* that the blocks of a frame share: [PRESAMPLES / 16]; NULL: never asked for */
     presample_volumes *sample_volumes; /* influence: parallel */
     uint32_t subsets;
+    bool wanted_subsets[PRESAMPLES / BLOCK];
     worker *workers;
     int worker_count;
     bool recording;

@@ -140,8 +140,21 @@ int noc_cpu_shared_draws(const stage_run *run) {
     return (int)m;
 }
 
+/* Marks the subsets that the frame's blocks have. A small picture has few of them; nearly all are marked where blocks
+ * are many, and where influence gives them to sets whose number is not known yet. */
+static void mark_subsets(const stage_run *run) {
+    cpu_view *s = run->s;
+    size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
+    bool all = run->frame->plan->candidates == NOC_CANDIDATES_INFLUENCE || blocks > 4 * (size_t)s->subsets;
+    memset(s->wanted_subsets, all, s->subsets);
+    for (size_t at = 0; at < blocks && !all; at++)
+        s->wanted_subsets[presample_subset(run->ctx.frame->seed, (u1)at, run->ctx.frame->index, s->subsets)] = true;
+}
+
 static void presample(void *arg, size_t subset, int index) {
     stage_run *run = arg;
+    if (!run->s->wanted_subsets[subset])
+        return;
     worker *w = &run->s->workers[index];
     noc_candidates from = run->frame->plan->candidates;
     int m = noc_cpu_shared_draws(run);
@@ -164,6 +177,7 @@ void noc_cpu_presample(stage_run *run) {
     if (!plan->draws || !shared || !run->ctx.light_count)
         return;
     run->s->subsets = presample_subsets((uint32_t)noc_cpu_shared_draws(run), (uint32_t)(b->blocks_x * b->blocks_y));
+    mark_subsets(run);
     noc_pool_run(run->s->pool, run->s->subsets, presample, run);
 }
 
