@@ -53,10 +53,11 @@ check: deps-check build/build.ninja
 	@$(NINJA) -C build
 	@tools/run-tests.sh build
 
-# -O1 and line numbers alone: most of its time goes into compiling. TURN=N: a share of the slow tests, after `make check`.
+# -O1 and line numbers alone: most of its time goes into compiling. TURN=N: after `make check`, its quick tests and a
+# share of the others, and of the programs those alone.
 asan: deps-check
 	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Dwerror=$(WERROR) -Doptimization=1 -Ddebug=false -Dc_args=-g1 -Dtests=enabled >/dev/null
-	@$(NINJA) -C build-asan
+	@$(NINJA) -C build-asan $(if $(TURN),$$(tools/turn-tests.py build-asan build $(TURN) targets))
 	@tools/run-tests.sh build-asan --timeout-multiplier 4 $(if $(TURN),$$(tools/turn-tests.py build-asan build $(TURN)))
 
 # The pool, the log, frames, the tables that they share, and what loads a scene.

@@ -3,7 +3,7 @@
 # seeds, and prints a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS.
 # Fails where something was found. As many corpora at a time as there are cores, or JOBS of them; fuzz.sh BUILD SECONDS
 # alone CORPUS is what each of them runs. fuzz.sh BUILD table: the table of all runs so far. fuzz.sh BUILD turn N: the
-# corpora whose turn it is at the Nth of several runs that share the work, one in five of them.
+# corpora whose turn it is at the Nth of several runs that share the work, one in ten of them.
 set -u
 build=$1 seconds=${2:-60}
 shift 2
@@ -106,7 +106,7 @@ if [ "$seconds" = table ]; then
     exit
 fi
 if [ "$seconds" = turn ]; then
-    echo "$corpora" | awk -v turn="$1" '$1 && n++ % 5 == turn % 5 { printf "%s ", $1 }'
+    echo "$corpora" | awk -v turn="$1" '$1 && n++ % 10 == turn % 10 { printf "%s ", $1 }'
     exit
 fi
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" \

@@ -1,30 +1,45 @@
 #!/usr/bin/env python3
-"""turn-tests.py BUILD TIMED TURN: the tests of BUILD whose turn it is at the TURNth of several runs that share the
-work. Tests that took under 5 s in the last run of the build folder TIMED are among them always, of longer ones a
-quarter. Without that run all of them are."""
+"""turn-tests.py BUILD TIMED TURN [targets]: the tests of BUILD whose turn it is at the TURNth of several runs that share
+the work. Tests that took under a second in the last run of the build folder TIMED are among them always. Of longer
+ones every name has its turn, one in six, whatever else there is. Without that run all of them are. Never among them are
+those of fuzz/: `make fuzz` runs their inputs under the same sanitizers. With `targets`: what must be built for them."""
 import json
+import os
 import subprocess
 import sys
+import zlib
 
-LONG = 5  # s
-SHARE = 4
+LONG = 1  # s
+SHARE = 6
+
+
+def introspect(build, what):
+    return json.loads(subprocess.check_output(["meson", "introspect", what, build]))
+
+
+def durations(timed):
+    try:
+        with open(timed + "/meson-logs/testlog.json", encoding="utf-8", errors="replace") as log:
+            return {test["name"]: test["duration"] for test in map(json.loads, log)}
+    except OSError:
+        return {}
+
+
+def targets_of(build, tests):
+    files = {target["id"]: target["filename"] for target in introspect(build, "--targets")}
+    wanted = {name for test in tests for target in test["depends"] for name in files.get(target, [])}
+    return sorted(os.path.relpath(name, build) for name in wanted)
 
 
 def main():
     build, timed, turn = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    listed = json.loads(subprocess.check_output(["meson", "introspect", "--tests", build]))
-    seconds = {}
-    try:
-        with open(timed + "/meson-logs/testlog.json", encoding="utf-8", errors="replace") as log:
-            for line in log:
-                program = json.loads(line)
-                seconds[program["name"]] = program["duration"]
-    except OSError:
-        pass
-    names = [one["name"] for one in listed]
-    slow = sorted((name for name in names if seconds.get(name, 0) > LONG), key=lambda name: -seconds[name])
-    left_out = {name for i, name in enumerate(slow) if i % SHARE != turn % SHARE}
-    print(*(name for name in names if name not in left_out))
+    seconds = durations(timed)
+    tests = [test for test in introspect(build, "--tests") if not test["name"].startswith("fuzz-") and
+             (seconds.get(test["name"], 0) < LONG or zlib.crc32(test["name"].encode()) % SHARE == turn % SHARE)]
+    if sys.argv[4:] == ["targets"]:
+        print(*targets_of(build, tests))
+    else:
+        print(*(test["name"] for test in tests))
 
 
 if __name__ == "__main__":

@@ -50,23 +50,40 @@ program c SKIP ''
 expect "programs without TAP are one test each" 1 "1 passed, 1 failed, 1 skipped"
 expect "no tests are no success" 1 "0 passed, 0 failed, 0 skipped"
 
-# tools/turn-tests.py, by which CI shares slow tests out: of four turns each slow test has one, quick ones have all.
+# tools/turn-tests.py, by which CI shares slow tests out.
 build=${NOC_BUILD:?names the build folder}
-meson introspect --tests "$build" | python3 -c '
+meson introspect --tests "$build" >"$work/tests"
+# timed SLOW: a log in which every SLOWth test took 2 s, the others 0.5 s
+timed() {
+    python3 -c '
 import json, sys
-for i, test in enumerate(json.load(sys.stdin)):
-    print(json.dumps({"name": test["name"], "duration": 6 if i % 2 else 4}))' >"$log"
-for turn in 1790000003 1790000004 1790000005 1790000006; do
-    python3 "$source_dir/tools/turn-tests.py" "$build" "$work" $turn | tr ' ' '\n'
-done | sort | uniq -c | awk '{ print $1 }' | sort -n | uniq -c |
-    awk '{ printf "%s%s x%s", n++ ? ", " : "", $1, $2 }' >"$work/out"
+tests = [test for test in json.load(sys.stdin) if not test["name"].startswith("fuzz-")]
+for i, test in enumerate(tests):
+    print(json.dumps({"name": test["name"], "duration": 0.5 if i % int(sys.argv[1]) else 2}))' "$1" <"$work/tests" >"$log"
+}
+chosen() { python3 "$source_dir/tools/turn-tests.py" "$build" "$work" "$@" | tr ' ' '\n'; }
+# report NAME FOUND EXPECTED
+report() {
+    count=$((count + 1))
+    if [ "$2" = "$3" ]; then
+        echo "ok $count - $1"
+    else
+        failed=1
+        echo "not ok $count - $1: $2, not $3"
+    fi
+}
+timed 2
 lines=$(wc -l <"$log")
-count=$((count + 1))
-if [ "$(cat "$work/out")" = "$((lines / 2)) x1, $(((lines + 1) / 2)) x4" ]; then
-    echo "ok $count - of four turns each slow test has one"
-else
-    failed=1
-    echo "not ok $count - of four turns each slow test has one: $(cat "$work/out") of $lines"
-fi
+times=$(for turn in 1790000003 1790000004 1790000005 1790000006 1790000007 1790000008; do chosen $turn; done | sort |
+    uniq -c | awk '{ print $1 }' | sort -n | uniq -c | awk '{ printf "%s%s x%s", n++ ? ", " : "", $1, $2 }')
+report "of six turns each slow test has one, quick ones have all" "$times" \
+    "$(((lines + 1) / 2)) x1, $((lines / 2)) x6"
+chosen 4 >"$work/half"
+timed 1
+chosen 4 >"$work/all"
+report "the turn of a test is its own" "$(grep -vxFf "$work/half" "$work/all")" ""
+: >"$log"
+report "without times all tests are chosen" "$(chosen 1 | wc -l)" "$lines"
+report "what they need is built" "$(chosen 1 targets | grep -cxE 'nocturne|tests/base-test_base|fuzz/seeds')" 2
 echo "1..$count"
 exit $failed
