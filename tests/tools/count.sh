@@ -59,7 +59,8 @@ timed() {
 import json, sys
 tests = [test for test in json.load(sys.stdin) if not test["name"].startswith("fuzz-")]
 for i, test in enumerate(tests):
-    print(json.dumps({"name": test["name"], "duration": 0.5 if i % int(sys.argv[1]) else 2}))' "$1" <"$work/tests" >"$log"
+    print(json.dumps({"name": test["name"], "duration": 0.5 if i % int(sys.argv[1]) else 2}))' \
+        "$1" <"$work/tests" >"$log"
 }
 chosen() { python3 "$source_dir/tools/turn-tests.py" "$build" "$work" "$@" | tr ' ' '\n'; }
 # report NAME FOUND EXPECTED
