@@ -134,6 +134,11 @@ FN1 cell_key cell_key_of(f3 p, f3 n, u1 level) {
     return k;
 }
 
+/* Key of the cell of a block of the picture, by the surface that one of its pixels sees. */
+FN1 cell_key cell_key_at(frame_camera c, f3 p, f3 n, f1 depth) {
+    return cell_key_of(p, n, cell_level(cell_side(c, depth)));
+}
+
 FN1 b1 cell_same(cell_key a, cell_key b) { return a.place == b.place && a.check == b.check; }
 
 #endif

@@ -43,19 +43,25 @@ struct list_chosen {
     u1 draws;
 };
 
-/* A light, and the probability of having been found; 0: none was. */
-struct list_found {
-    u1 light;
-    f1 share;
-};
-
 #ifndef CORE_GLSL
 typedef struct list_top list_top;
 typedef struct list_group list_group;
 typedef struct list_entry list_entry;
 typedef struct list_size list_size;
 typedef struct list_chosen list_chosen;
-typedef struct list_found list_found;
+#endif
+
+/* A place of a group that a draw of the tail has come to, its score, and the probability with which it came there from
+ * where it fell on the line. p.place 16: nowhere. */
+struct list_way {
+    list_group group;
+    list_place p;
+    f1 score;
+    f1 share;
+};
+
+#ifndef CORE_GLSL
+typedef struct list_way list_way;
 #endif
 
 FN list_top top_load(CTX u1 part);
@@ -219,35 +225,34 @@ FN1 list_place place_at(CTX u1 group, f1 total, f1 at) {
     return p;
 }
 
-/* A light below a place of a group, by the scores on the way down from it. */
-FN1 list_found descend(CTX u1 patches, list_group g, list_place from, f1 score) {
-    list_found f;
-    f1 share = 1.0f;
-    list_place p = from;
-    while (g.level > 0u && p.place < 16u) {
-        g.level--;
-        g.block = 16u * g.block + p.place;
-        score_group(PASS g, patches, score, U32(LIST_SPARE));
-        f1 total = score_sum(PASS U32(LIST_SPARE));
-        p = place_at(PASS U32(LIST_SPARE), total, p.at);
-        if (p.place < 16u) {
-            score = score_at(PASS U32(LIST_SPARE), p.place);
-            share = share * (score / total);
-        }
+FN1 b1 goes_down(list_way w) { return w.group.level > 0u && w.p.place < 16u; }
+
+FN1 list_group group_below(list_way w) {
+    list_group g = w.group;
+    g.level--;
+    g.block = 16u * g.block + w.p.place;
+    return g;
+}
+
+/* On to a child of the place, by the children's scores in a group. */
+FN1 list_way way_down(CTX list_way from, u1 scores) {
+    list_way w;
+    f1 total = score_sum(PASS scores);
+    w.group = group_below(from);
+    w.p = place_at(PASS scores, total, from.p.at);
+    w.score = 0.0f;
+    w.share = 0.0f;
+    if (w.p.place < 16u) {
+        w.score = score_at(PASS scores, w.p.place);
+        w.share = from.share * (w.score / total);
     }
-    f.light = 0u;
-    f.share = 0.0f;
-    if (p.place < 16u) {
-        f.light = cluster_light(PASS g.part, g.block, p.place);
-        f.share = share;
-    }
-    return f;
+    return w;
 }
 
 /* Lays the groups' parts on a line. Returns its length. */
 #ifdef CORE_WORKERS
 u1 lay_line(u1 groups, f1 scale);
-u1 find_tail(u1 patches, list_chosen c, f1 scale, tail_line line);
+u1 find_tail(u1 patches, list_chosen c, f1 scale, tail_line line, u1 all);
 #else
 FN1 u1 lay_line(CTX u1 groups, f1 scale) {
     u1 all = 0u;
@@ -262,22 +267,29 @@ FN1 u1 lay_line(CTX u1 groups, f1 scale) {
     return all;
 }
 
-/* Adds what the draws find to the entries. Returns how many there are then. */
-FN1 u1 find_tail(CTX u1 patches, list_chosen c, f1 scale, tail_line line) {
+/* Adds what the draws find to the entries. Returns how many there are then. all: length of the line. */
+FN1 u1 find_tail(CTX u1 patches, list_chosen c, f1 scale, tail_line line, u1 all) {
     u1 count = c.entries;
     u1 goal = line.first;
     u1 most = minu1(c.draws, U32(LIST_ROOM) - count);
     u1 g = 0u;
-    for (u1 k = 0u; k < most && goal < line_load(PASS c.groups); k++) {
+    for (u1 k = 0u; k < most && goal < all; k++) {
         while (line_load(PASS g + 1u) <= goal)
             g++;
-        list_place p = tail_place(PASS g, scale, goal - line_load(PASS g), line.rest);
-        f1 score = score_at(PASS g, p.place);
-        list_found f = descend(PASS patches, list_group_load(PASS g), p, score);
-        if (f.share > 0.0f) {
+        list_way w;
+        w.group = list_group_load(PASS g);
+        w.p = tail_place(PASS g, scale, goal - line_load(PASS g), line.rest);
+        w.score = score_at(PASS g, w.p.place);
+        w.share = 1.0f;
+        f1 fell = w.score;
+        while (goes_down(w)) {
+            score_group(PASS group_below(w), patches, w.score, U32(LIST_SPARE));
+            w = way_down(PASS w, U32(LIST_SPARE));
+        }
+        if (w.share > 0.0f) {
             list_entry e;
-            e.light = f.light;
-            e.weight = tail_weight(line, score, scale, f.share);
+            e.light = cluster_light(PASS w.group.part, w.group.block, w.p.place);
+            e.weight = tail_weight(line, fell, scale, w.share);
             entry_store(PASS count, e);
             count++;
         }
@@ -294,7 +306,8 @@ FN1 u1 draw_tail(CTX u1 patches, list_chosen c, u1 start) {
     u1 count = c.entries;
     if (total > 0.0f && c.draws > 0u) {
         f1 scale = tail_scale(total);
-        count = find_tail(PASS patches, c, scale, tail_line_of(lay_line(PASS c.groups, scale), c.draws, start));
+        u1 all = lay_line(PASS c.groups, scale);
+        count = find_tail(PASS patches, c, scale, tail_line_of(all, c.draws, start), all);
     }
     return count;
 }
@@ -312,29 +325,41 @@ FN1 list_size list_build(CTX u1 blocks, f3 eye, u1 listed, u1 drawn, u1 start) {
     return size;
 }
 
-/* A list with room to spare holds its lights several times, each time to be looked at in another point: up to a ray's
- * worth, and in all not in fewer points than the pixel's draws would be (a large light close by differs more from place
- * to place than from light to light). room: entries that there may be; rays, draws: of a pixel. */
-FN1 list_size list_fill(CTX list_size size, u1 room, u1 rays, u1 draws) {
-    u1 once = size.count;
-    if (once == 0u)
-        return size;
-    u1 wanted = draws / once;
-    if (wanted < rays)
-        wanted = rays;
-    u1 copies = minu1(minu1(room, U32(LIST_ROOM)) / once, wanted);
-    if (copies < 2u)
-        return size;
-    /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them.
-     */
-    for (u1 i = once * copies; i-- > 0u;) {
-        list_entry e = entry_load(PASS i / copies);
+/* How many times a list with room to spare holds each of its lights, each time to be looked at in another point: up to
+ * a ray's worth, and in all not in fewer points than the pixel's draws would be (a large light close by differs more
+ * from place to place than from light to light). once: lights; room: entries that there may be; rays, draws: of a
+ * pixel. */
+FN1 u1 list_copies(u1 once, u1 room, u1 rays, u1 draws) {
+    u1 copies = 1u;
+    if (once > 0u) {
+        u1 wanted = draws / once;
+        if (wanted < rays)
+            wanted = rays;
+        copies = minu1(minu1(room, U32(LIST_ROOM)) / once, wanted);
+        if (copies < 1u)
+            copies = 1u;
+    }
+    return copies;
+}
+
+/* One of a light's copies. */
+FN1 list_entry entry_copy(list_entry e, u1 copies) {
+    if (copies > 1u) {
         EXACT f1 weight = e.weight / F32(copies);
         e.weight = weight;
-        entry_store(PASS i, e);
     }
-    size.count = once * copies;
-    size.copies = copies;
+    return e;
+}
+
+/* Copies are side by side: rays that are an equal distance apart would find the same light again in each round of all
+ * of them. */
+FN1 list_size list_fill(CTX list_size size, u1 room, u1 rays, u1 draws) {
+    u1 once = size.count;
+    size.copies = list_copies(once, room, rays, draws);
+    size.count = once * size.copies;
+    if (size.copies > 1u)
+        for (u1 i = size.count; i-- > 0u;)
+            entry_store(PASS i, entry_copy(entry_load(PASS i / size.copies), size.copies));
     return size;
 }
 

@@ -42,11 +42,20 @@ struct list_kept {
     real w; /* 0: none was seen */
 };
 
+/* What is known of one of a pixel's rays. */
+struct list_found {
+    u32 entry;
+    real times; /* it was drawn so often */
+    real w;     /* of the list_ray; 0 where it is blocked */
+    real p;
+};
+
 #ifndef CORE_GLSL
 typedef struct list_sums list_sums;
 typedef struct list_ray list_ray;
 typedef struct list_drawn list_drawn;
 typedef struct list_kept list_kept;
+typedef struct list_found list_found;
 #endif
 
 FN list_prior prior_load(CTX u1 place); /* of the list's rows, 16 a row, for the surfaces at hand */
@@ -64,6 +73,7 @@ FN void drawn_store(CTX u32 ray, mask on, list_drawn d); /* ray number `ray` of 
 FN real drawn_times(CTX u1 ray);                         /* 0: no such ray */
 FN real found_p(CTX u1 ray);                             /* of the list_ray */
 FN real found_w(CTX u1 ray);                             /* 0 where the ray was blocked */
+FN list_found found_of(CTX u32 ray);                     /* of each lane another ray */
 
 /* ---- ask ---- */
 
@@ -268,6 +278,37 @@ FN list_kept list_resample(CTX u1 rays, real xi) {
     EXACT real w = all / sel(some, p, K(1.0f));
     kept.w = sel(some, w, K(0.0f));
     return kept;
+}
+
+/* An entry's sample with such a W. */
+FN reservoir list_sample(CTX u32 key, u32 entry, real w, real p, real m) {
+    reservoir r;
+    r.light = entry_light(PASS entry);
+    r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);
+    r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), entry);
+    r.w = w;
+    r.m = m;
+    r.p = p;
+    return r;
+}
+
+/* The reservoir that stands for a pixel of n draws in views of the candidates; empty where its ray was blocked. */
+FN reservoir list_stand_in(CTX u32 key, u1 rays, real n, real m) {
+    mask some = n > K(0.0f);
+    u32 ray = list_shown(PASS rays, n, rng(key, KU(DIM_LIST_SHOWN)));
+    list_found f = found_of(PASS selu(some, ray, KU(0u)));
+    EXACT real w = f.w * n / f.times;
+    reservoir r = reservoir_empty();
+    r.m = m;
+    return reservoir_sel(some, list_sample(PASS key, f.entry, w, f.p, m), r);
+}
+
+/* The pixel's own reservoir: one of the samples that are seen, if there is one. */
+FN reservoir list_resampled(CTX u32 key, u1 rays, reservoir own) {
+    list_kept kept = list_resample(PASS rays, rng(key, KU(DIM_LIST_KEPT)));
+    list_found f = found_of(PASS kept.ray);
+    own.w = K(0.0f);
+    return reservoir_sel(kept.w > K(0.0f), list_sample(PASS key, f.entry, kept.w, f.p, own.m), own);
 }
 
 /* What of a pixel's light its reservoir of M = m shows, where the frames behind it are reused; its rays, of one frame's

@@ -56,8 +56,9 @@ FN u32 entry_lights(CTX u1 row, int l, u1 rows, u1 count); /* of places l to l +
 FN void sketch_store(CTX u1 row, int l, list_sketch k);    /* of these places */
 FN list_sketch sketch_load(CTX u1 place);                  /* in every lane; place: 16 a row */
 
-/* Rows of 16 that a list of so many entries has (core/list_faces.h). */
+/* Rows of 16 that a list of so many entries has, and where an entry lies in them (core/list_faces.h). */
 FN1 u1 list_rows(u1 count) { return (count + 15u) / 16u; }
+FN1 u1 entry_place(u1 i, u1 rows) { return i % rows * 16u + i / rows; }
 
 /* ---- making them ---- */
 
@@ -112,8 +113,8 @@ FN list_sketch sketch_of(light l) {
 /* Of all entries of the tile's list. */
 FN1 void list_sketches(CTX u1 count) {
     u1 rows = list_rows(count);
-    for (u1 row = 0u; row < rows; row++)
-        EACH16(l)
+    EACH_GROUP(row, 0u, rows)
+    EACH16(l)
     sketch_store(PASS row, l, sketch_of(light_load(PASS entry_lights(PASS row, l, rows, count))));
 }
 

@@ -333,6 +333,10 @@ void drawn_store(uint ray, bool on, list_drawn d) {
     }
 }
 float drawn_times(uint ray) { return wf(ray_answer(ray, uint(RAY_TIMES))); }
+list_found found_of(uint ray) {
+    return list_found(wu(ray_answer(ray, uint(RAY_ENTRY))), drawn_times(ray), wf(ray_answer(ray, uint(RAY_W))),
+                      wf(ray_answer(ray, uint(RAY_P))));
+}
 float found_p(uint ray) { return wf(ray_answer(ray, uint(RAY_P))); }
 float found_w(uint ray) { return wf(ray_answer(ray, uint(RAY_W))); }
 
@@ -382,7 +386,6 @@ void share_pixel(surf s, uint near, uint count, uint x, uint y) {
     put(pixel_answer(uint(PIXEL_BRIGHT)), sums.bright);
     put(pixel_answer(uint(PIXEL_DRAWS)), n);
     vec3 colour = vec3(0.0);
-    put(pixel_answer(uint(PIXEL_SHOWN)), list_shown(rays, n, rng(key, DIM_LIST_SHOWN)));
     for (uint k = 0u; k < rays; k++) {
         list_drawn d = list_drawn(wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k),
                                   wf(ray_answer(k, uint(RAY_WEIGHED))));
@@ -398,8 +401,10 @@ void share_pixel(surf s, uint near, uint count, uint x, uint y) {
         if (seen && abs(c.x) + abs(c.y) + abs(c.z) < 1e30)
             colour = add3(colour, c);
     }
-    list_kept kept = list_resample(rays, rng(key, DIM_LIST_KEPT));
-    put(pixel_answer(uint(PIXEL_KEPT)), kept.ray);
+    put(pixel_answer(uint(PIXEL_SHOWN)), list_stand_in(key, rays, n, 0.0).w);
+    reservoir own = reservoir(0u, 0.0, 0.0, 0.0, 0.0, 0.0);
+    reservoir kept = list_resampled(key, rays, own);
+    put(pixel_answer(uint(PIXEL_KEPT)), kept.light);
     put(pixel_answer(uint(PIXEL_KEPT_W)), kept.w);
     for (uint k = 0u; k < 3u; k++)
         put(pixel_answer(uint(PIXEL_COLOUR) + k), colour[k]);

@@ -125,16 +125,15 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
     list_asked *asked = noc_alloc_large(1, sizeof(*asked));
     ray_draw draws[MOST_SHADOW_RAYS];
     rayblock way;
-    uint32_t lanes = lanes_with_surface(g), shown[BLOCK], kept[BLOCK];
-    float kept_w[BLOCK];
+    uint32_t lanes = lanes_with_surface(g);
+    rblock shown = { 0 }, kept = { 0 };
     cblock colour = { 0 };
     assert_non_null(asked);
     memset(draws, 0, sizeof(draws));
     k->list_share(ctx, g, lanes, x, y, BRIGHTNESS, b, asked);
-    k->list_show(ctx, x, y, asked, shown);
     for (int i = 0; i < asked->most; i++) {
         uint32_t seen = 0;
-        k->list_ray(ctx, g, x, y, asked, i, &draws[i].r, &draws[i].brings, &way);
+        k->list_ray(ctx, x, y, asked, i, &draws[i], &way);
         for (int l = 0; l < BLOCK; l++) {
             uint32_t pixel = (uint32_t)((y + (l >> 2)) * W + x + (l & 3));
             seen |= (uint32_t)(asked->times[i][l] > 0 && frame_sees(pixel, (u32)i)) << l;
@@ -142,7 +141,8 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
         }
         k->shade_known(&draws[i].brings, draws[i].r.w, seen, &colour);
     }
-    k->list_keep(ctx, x, y, draws, asked->most, kept, kept_w);
+    k->list_stand_in(ctx, x, y, draws, asked->most, asked->n, &shown);
+    k->list_resample(ctx, x, y, draws, asked->most, &kept);
     for (int l = 0; l < BLOCK; l++) {
         uint32_t *pixel = out + (size_t)l * PIXEL_WORDS;
         if (!(lanes >> l & 1))
@@ -150,9 +150,9 @@ static void answer_block(const trial *t, const kernels *k, const struct core_con
         put_float(pixel + PIXEL_ALL, asked->all[l]);
         put_float(pixel + PIXEL_BRIGHT, asked->bright[l]);
         put_float(pixel + PIXEL_DRAWS, asked->n[l]);
-        pixel[PIXEL_SHOWN] = shown[l];
-        pixel[PIXEL_KEPT] = kept[l];
-        put_float(pixel + PIXEL_KEPT_W, kept_w[l]);
+        put_float(pixel + PIXEL_SHOWN, shown.w[l]);
+        pixel[PIXEL_KEPT] = kept.light[l];
+        put_float(pixel + PIXEL_KEPT_W, kept.w[l]);
         for (int c = 0; c < 3; c++)
             put_float(pixel + PIXEL_COLOUR + c, colour.rgb[c][l]);
         for (int i = 0; i < asked->most; i++) {
@@ -215,11 +215,11 @@ static int part_of(size_t word) {
         return word < ANSWER_WEIGHT ? LISTS : WEIGHTS;
     size_t in = (word - ANSWER_PIXELS) % PIXEL_WORDS;
     if (in < PIXEL_RAYS)
-        return in >= PIXEL_COLOUR                      ? COLOURS
-               : in == PIXEL_ALL || in == PIXEL_BRIGHT ? SUMS
-               : in == PIXEL_DRAWS                     ? DRAWS
-               : in == PIXEL_KEPT_W                    ? RAY_WEIGHTS
-                                                       : CHOICE;
+        return in >= PIXEL_COLOUR                        ? COLOURS
+               : in == PIXEL_ALL || in == PIXEL_BRIGHT   ? SUMS
+               : in == PIXEL_DRAWS                       ? DRAWS
+               : in == PIXEL_KEPT_W || in == PIXEL_SHOWN ? RAY_WEIGHTS
+                                                         : CHOICE;
     in = (in - PIXEL_RAYS) % RAY_WORDS;
     return in < RAY_U ? CHOICE : in < RAY_W ? PLACES : RAY_WEIGHTS;
 }

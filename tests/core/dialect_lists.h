@@ -274,6 +274,21 @@ FN void drawn_store(CTX u32 ray, mask on, list_drawn d) {
 FN real drawn_times(CTX u1 ray) { return dialect_drawn[ray].times; }
 FN real found_p(CTX u1 ray) { return dialect_found[ray].p; }
 FN real found_w(CTX u1 ray) { return dialect_found[ray].w; }
+FN list_found found_of(CTX u32 ray) {
+    list_found f;
+    f.entry = KU(0u);
+    f.times = K(1.0f);
+    f.w = K(0.0f);
+    f.p = K(0.0f);
+    for (int k = 0; k < PIXEL_RAYS; k++) {
+        mask here = ray == KU(U32(k));
+        f.entry = selu(here, dialect_drawn[k].entry, f.entry);
+        f.times = sel(here, max_(dialect_drawn[k].times, K(1.0f)), f.times);
+        f.w = sel(here, dialect_found[k].w, f.w);
+        f.p = sel(here, dialect_found[k].p, f.p);
+    }
+    return f;
+}
 
 /* ---- pixels ---- */
 
@@ -339,6 +354,8 @@ FN void list_pixels(CTX u32 item, u32 key, surf s) {
     list_kept kept = list_resample(PASS U32(PIXEL_RAYS), rng(key, KU(5006u)));
     put_u32(PASS item, LISTS_FIRST + 21, kept.ray);
     put_real(PASS item, LISTS_FIRST + 22, kept.w);
+    put_resv(PASS item, LISTS_FIRST + 113, list_stand_in(PASS key, U32(PIXEL_RAYS), n, rng(key, KU(5014u))));
+    put_resv(PASS item, LISTS_FIRST + 119, list_resampled(PASS key, U32(PIXEL_RAYS), ris_list(PASS s, key, 3u)));
     put_real(PASS item, LISTS_FIRST + 23, list_reused(to_real(shr(bits, 22)), 32.0f));
     sketch_surf q = sketch_surf_of(s);
     list_sketch brief = sketch_of(light_load(PASS bits));
@@ -472,16 +489,18 @@ FN1 void tile_scores(CTX u1 item, u1 patches) {
     score_lights(PASS 0u, 5u, patches, score, 9u);
     put_f1(PASS item, LISTS_FIRST + 65, score_at(PASS 9u, place));
     put_f1(PASS item, LISTS_FIRST + 66, score_sum(PASS 9u));
-    list_group g;
-    g.part = 0u;
-    g.level = place & 1u;
-    g.block = 3u;
-    list_place from;
-    from.place = place;
-    from.at = tile_real(item, 342u);
-    list_found f = descend(PASS patches, g, from, 1.0f);
-    put_u1(PASS item, LISTS_FIRST + 67, f.light);
-    put_f1(PASS item, LISTS_FIRST + 68, f.share);
+    list_way w;
+    w.group.part = 0u;
+    w.group.level = 1u;
+    w.group.block = 3u;
+    w.p.place = place;
+    w.p.at = tile_real(item, 342u);
+    w.score = 1.0f;
+    w.share = 0.5f;
+    score_group(PASS group_below(w), patches, w.score, 10u);
+    w = way_down(PASS w, 10u);
+    put_u1(PASS item, LISTS_FIRST + 67, w.p.place);
+    put_f1(PASS item, LISTS_FIRST + 68, w.share);
 }
 
 /* Slots 69 to 72. */

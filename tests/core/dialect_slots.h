@@ -10,7 +10,7 @@
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
 #define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)
-#define LISTS_SLOTS 113 /* dialect_lists.h */
+#define LISTS_SLOTS 125 /* dialect_lists.h */
 #define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
 #define TEXTURES_SLOTS 17 /* dialect_textures.h */
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)

@@ -35,6 +35,7 @@ FN real far_at(CTX u32 face, u32 row, u32 column) { return 0; }
 FN real column_at(CTX u32 face, u32 column) { return 0; }
 FN void drawn_store(CTX u32 ray, mask on, list_drawn d) {}
 FN real drawn_times(CTX u1 ray) { return 0; }
+FN list_found found_of(CTX u32 ray) { return (list_found){ 0 }; }
 FN real found_p(CTX u1 ray) { return 0; }
 FN real found_w(CTX u1 ray) { return 0; }
 

@@ -46,12 +46,11 @@ typedef struct tile_rays {
     list_asked asked;                     /* of the block at hand */
     size_t at[TILE_BLOCKS * TILE_BLOCKS]; /* the tile's blocks in the picture */
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
-    int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
+    float n[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* draws of pixels */
     int cells, count;
     uint32_t fresh[TILE_BLOCKS * TILE_BLOCKS]; /* restir: lanes that no earlier frames stand behind */
     /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
     float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
-    double bright;
     tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
     ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
     shadow_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
@@ -61,7 +60,6 @@ typedef struct tile_rays {
 typedef struct learned_tile {
     int worker;
     size_t first, count;
-    double bright; /* sum of what its pixels are expected to see, cd/m2 */
 } learned_tile;
 
 /* Scratch of passes, one a thread, made when a plan first has such a pass (scratch.c). */
@@ -162,6 +160,7 @@ typedef struct cpu_view {
     uint32_t learned_epoch; /* noc_frame.epoch that it is of */
     learned_tile *learned_tiles;
     noc_observations *observations;    /* of the frame's tiles */
+    float *block_bright;               /* core/list_bright.h, of the frame being made */
     float list_brightness;             /* mean luminance that the last frame expected, cd/m2; 0: not known */
     noc_light_record *previous_lights; /* all lights as they were in the last frame that left reservoirs */
     noc_past past;

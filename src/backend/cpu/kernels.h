@@ -67,6 +67,7 @@ typedef struct core_cursors {
     const struct priors *priors;
     struct list_asked *asked; /* of the block */
     const struct ray_draw *found;
+    const float *bright;          /* of the picture's blocks */
     noc_found *volumes;           /* of the tile: what its points find among influence volumes */
     const pick_block *picks;      /* of the block */
     const presample_row *samples; /* of the block: its subset */
@@ -214,6 +215,7 @@ typedef struct ray_draw {
     rblock r;             /* w: W, 0 where the ray was blocked; m is not used */
     cblock brings;        /* what the surface reflects of the sample, unshadowed */
     uint8_t entry[BLOCK]; /* of the list */
+    uint8_t times[BLOCK]; /* it was drawn so often; 0: there is no such ray */
     int block;            /* of the tile */
     int rays;             /* the block has so many of them, one after the other */
 } ray_draw;
@@ -245,17 +247,17 @@ typedef struct kernels {
                        uint32_t start, list_scratch *scratch);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Several rays a pixel over the list (core/list_rays.h): its lights several times where there is room; how many
-     * rays, to which entries; ray k of each lane, into all of out but m; which ray stands for a lane in views of the
-     * candidates. Then, when it is known what the `rays` of a block found: which one becomes a lane's reservoir, with
-     * which W; and what of a pixel is its reservoir's. */
+     * rays, to which entries; ray k of each lane, into all of out but r.m. From what the `rays` of a block are or have
+     * found: the reservoirs that stand for its lanes in views of the candidates, of n draws each, and those that lanes
+     * keep, both with the M that is there; and what of a pixel is its reservoir's. */
     void (*list_fill)(const struct core_context *ctx);
     void (*list_share)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, float brightness,
                        const priors *priors, list_asked *out);
-    void (*list_ray)(const struct core_context *ctx, const gblock *g, int x, int y, list_asked *asked, int k,
-                     rblock *out, cblock *brings, rayblock *way);
-    void (*list_show)(const struct core_context *ctx, int x, int y, list_asked *asked, uint32_t ray[BLOCK]);
-    void (*list_keep)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,
-                      uint32_t ray[BLOCK], float w[BLOCK]);
+    void (*list_ray)(const struct core_context *ctx, int x, int y, list_asked *asked, int k, ray_draw *out,
+                     rayblock *way);
+    void (*list_stand_in)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,
+                          const float n[BLOCK], rblock *out);
+    void (*list_resample)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays, rblock *out);
     void (*list_mix)(const struct core_context *ctx, const float m[BLOCK], float reused[BLOCK]);
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,

@@ -6,6 +6,7 @@
 
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/learned.h"
+#include "core/list_bright.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,12 +14,21 @@
 enum { MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_ASKED_A_TILE <= 1 << 15, "counts of a tile fit");
 
+FN f1 block_bright(CTX u1 block) { return ctx->at.bright[block]; }
+
+/* The sum of n numbers, a power of two, in halves. Overwrites them. */
+static float sum_in_halves(float *x, int n) {
+    for (int half = n / 2; half; half /= 2)
+        for (int i = 0; i < half; i++)
+            x[i] += x[i + half];
+    return x[0];
+}
+
 /* ---- what is expected ---- */
 
 static cell_key key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
     uint32_t l = cell_lane(lanes);
-    return cell_key_of((f3){ g->px[l], g->py[l], g->pz[l] }, (f3){ g->nx[l], g->ny[l], g->nz[l] },
-                       cell_level(cell_side(*c, g->depth[l])));
+    return cell_key_at(*c, (f3){ g->px[l], g->py[l], g->pz[l] }, (f3){ g->nx[l], g->ny[l], g->nz[l] }, g->depth[l]);
 }
 
 /* Number of the block's cell among those of the tile. */
@@ -44,8 +54,7 @@ static int find_priors(const stage_run *run, const gblock *g, uint32_t lanes, co
 /* ---- rays ---- */
 
 /* Ray k of each lane that has one. */
-static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int k,
-                     int x, int y) {
+static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, int block, int k, int x, int y) {
     ray_draw *d = &t->draws[t->count];
     shadow_block *s = &t->segments[t->count++];
     float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
@@ -53,30 +62,32 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     d->rays = t->asked.most;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
-    run->k->list_ray(ctx, g, x, y, &t->asked, k, &d->r, &d->brings, &s->rays);
+    run->k->list_ray(ctx, x, y, &t->asked, k, d, &s->rays);
     for (int l = 0; l < BLOCK; l++) {
         s->valid |= (uint32_t)(d->r.w[l] > 0) << l;
         s->light[l] = d->r.light[l];
-        d->entry[l] = (uint8_t)t->asked.entry[k][l];
     }
 }
 
-/* The reservoir that stands for the block in views of the candidates: one of the draws, at random. */
-static void keep_one(const stage_run *run, tile_rays *t, const struct core_context *ctx, int block, int x, int y,
-                     rblock *out) {
-    const list_asked *asked = &t->asked;
-    uint32_t ray[BLOCK];
-    run->k->list_show(ctx, x, y, &t->asked, ray);
+/* The pixel of lane 0 of a block of the picture. */
+static tile_block block_in_picture(const stage_run *run, size_t at) {
+    size_t wide = (size_t)run->s->b.blocks_x;
+    return (tile_block){ at, (int)(at % wide) * BLOCK_SIDE, (int)(at / wide) * BLOCK_SIDE };
+}
+
+/* The reservoirs that stand for block n's pixels in views of the candidates, by its rays from number `first` on. */
+static void stand_in(const stage_run *run, tile_rays *t, const struct core_context *ctx, int first) {
+    const ray_draw *d = &t->draws[first];
+    tile_block b = block_in_picture(run, t->at[d->block]);
+    run->k->list_stand_in(ctx, b.x, b.y, d, d->rays, t->n[d->block], &run->s->b.r[run->stage->target][b.at]);
+}
+
+/* Reservoirs without samples. M must not depend on what is found. */
+static void clear_block(rblock *r, uint32_t lanes, float m) {
+    *r = (rblock){ 0 };
     for (int l = 0; l < BLOCK; l++) {
-        out->u[l] = out->v[l] = 0.5f;
-        if (!(asked->n[l] > 0))
-            continue;
-        const ray_draw *d = &t->draws[t->kept[block][l] = t->count - asked->most + (int)ray[l]];
-        out->light[l] = d->r.light[l];
-        out->u[l] = d->r.u[l];
-        out->v[l] = d->r.v[l];
-        out->w[l] = d->r.w[l] * asked->n[l] / asked->times[ray[l]][l];
-        out->p[l] = d->r.p[l];
+        r->u[l] = r->v[l] = 0.5f;
+        r->m[l] = lanes >> l & 1 ? m : 0;
     }
 }
 
@@ -86,31 +97,33 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     tile_rays *t = &w->lists->rays;
     ctx.at.lists = &w->lists->build;
     t->count = t->cells = 0;
-    bool asks = noc_stage_has(run->stage, NOC_PASS_SEEN_BEFORE);
-    float brightness = run->frame->plan->learns ? run->s->list_brightness : 0; /* it is learned, too */
-    t->bright = 0;
+    bool asks = noc_stage_has(run->stage, NOC_PASS_SEEN_BEFORE), learns = run->frame->plan->learns;
+    float brightness = learns ? run->s->list_brightness : 0; /* it is learned, too */
     run->k->list_fill(&ctx);
     for (int n = 0; n < points->count; n++) {
-        const gblock *g = points->g[n];
         tile_block at = points->block[n];
         uint32_t lanes = points->lanes[n];
         rblock *r = &b->r[run->stage->target][t->at[n] = at.at];
         b->visible[run->stage->target][at.at] = 0;
-        memset(r, 0, sizeof(*r));
-        for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
-            r->m[l] = lanes >> l & 1 ? (float)ctx.frame->draws : 0;
+        clear_block(r, lanes, (float)ctx.frame->draws);
+        if (learns)
+            run->s->block_bright[at.at] = 0;
         if (!lanes || !ctx.at.lists->list.count)
             continue;
-        t->cell_of[n] = find_priors(run, g, lanes, &w->lists->build.list, t);
+        t->cell_of[n] = find_priors(run, points->g[n], lanes, &w->lists->build.list, t);
         t->asked.fresh = asks ? t->fresh[n] : 0;
-        run->k->list_share(&ctx, g, lanes, at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors, &t->asked);
-        for (int l = 0; l < BLOCK; l++)
-            t->bright += t->asked.bright[l];
+        run->k->list_share(&ctx, points->g[n], lanes, at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors,
+                           &t->asked);
+        memcpy(t->n[n], t->asked.n, sizeof(t->n[n]));
+        if (learns)
+            run->s->block_bright[at.at] = sum_in_halves(t->asked.bright, BLOCK);
         for (int k = 0; k < t->asked.most; k++)
-            add_rays(run, t, &ctx, g, n, k, at.x, at.y);
-        keep_one(run, t, &ctx, n, at.x, at.y, r);
-        if (run->frame->params->aovs)
-            noc_cpu_note_candidates(run, w, n, at.at, lanes, r);
+            add_rays(run, t, &ctx, n, k, at.x, at.y);
+        if (!run->frame->params->aovs)
+            continue;
+        if (t->asked.most)
+            stand_in(run, t, &ctx, t->count - t->asked.most);
+        noc_cpu_note_candidates(run, w, n, at.at, lanes, r);
     }
 }
 
@@ -129,7 +142,7 @@ static void note_observations(stage_run *run, worker *w, tile at) {
     }
     list_pass *p = w->lists;
     learned_tile *out = &run->s->learned_tiles[item];
-    *out = (learned_tile){ (int)(w - run->s->workers), p->observed.len, 0, t->bright };
+    *out = (learned_tile){ (int)(w - run->s->workers), p->observed.len, 0 };
     /* they grow with the picture */
     if (!array_reserve(&p->observed, p->observed.len + (size_t)t->cells) ||
         !array_reserve(&p->observations, p->observations.len + (size_t)t->cells * list->count)) {
@@ -152,44 +165,21 @@ static void note_observations(stage_run *run, worker *w, tile at) {
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
 void noc_cpu_resample(stage_run *run, worker *w, tile at) {
     const tile_rays *t = &w->lists->rays;
+    struct core_context ctx = run->ctx;
+    ctx.at.lists = &w->lists->build;
     (void)at;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
-        size_t block = t->at[t->draws[i].block];
-        int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE,
-            y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
-        uint32_t ray[BLOCK];
-        rblock *r = &run->s->b.r[run->stage->target][block];
-        run->k->list_keep(&run->ctx, x, y, t->draws + i, t->draws[i].rays, ray, r->w);
-        for (int l = 0; l < BLOCK; l++) {
-            const rblock *kept = &t->draws[i + (int)ray[l]].r;
-            if (!(r->w[l] > 0))
-                continue;
-            r->light[l] = kept->light[l];
-            r->u[l] = kept->u[l];
-            r->v[l] = kept->v[l];
-            r->p[l] = kept->p[l];
-        }
-        run->s->b.visible[run->stage->target][block] = (uint16_t)lanes_with_sample(r);
-    }
-}
-
-/* Views: a reservoir that stands for its pixel is empty where its ray was blocked. */
-static void blank_hidden(const stage_run *run, const tile_rays *t) {
-    rblock *r = run->s->b.r[run->stage->target];
-    for (int i = 0; i < t->count; i += t->draws[i].rays) {
-        const int *kept = t->kept[t->draws[i].block];
-        rblock *shown = &r[t->at[t->draws[i].block]];
-        uint32_t blocked = 0;
-        for (uint32_t bits = lanes_that_ask(shown, 0); bits; bits &= bits - 1) {
-            int l = __builtin_ctz(bits);
-            blocked |= ~t->segments[kept[l]].unoccluded & 1u << l;
-        }
-        block_samples(shown, blocked);
+        tile_block b = block_in_picture(run, t->at[t->draws[i].block]);
+        rblock *r = &run->s->b.r[run->stage->target][b.at];
+        run->k->list_resample(&ctx, b.x, b.y, t->draws + i, t->draws[i].rays, r);
+        run->s->b.visible[run->stage->target][b.at] = (uint16_t)lanes_with_sample(r);
     }
 }
 
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->lists->rays;
+    struct core_context ctx = run->ctx;
+    ctx.at.lists = &w->lists->build;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, t->segments, t->count);
     else
@@ -197,7 +187,8 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
             t->segments[i].unoccluded = t->segments[i].valid;
     for (int i = 0; i < t->count; i++)
         block_samples(&t->draws[i].r, ~t->segments[i].unoccluded);
-    blank_hidden(run, t);
+    for (int i = 0; i < t->count; i += t->draws[i].rays)
+        stand_in(run, t, &ctx, i);
     if (run->frame->plan->learns)
         note_observations(run, w, at);
 }
@@ -238,7 +229,8 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
     if (!s->observations) {
         s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
         s->observations = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->observations)) : NULL;
-        if (!s->observations) {
+        s->block_bright = s->observations ? noc_alloc_large((size_t)s->b.blocks_x * (size_t)s->b.blocks_y, 4) : NULL;
+        if (!s->block_bright) {
             noc_cpu_release_tiles(s);
             return noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
         }
@@ -260,9 +252,17 @@ static void find_observations(list_pass *p) {
         p->observed.data[i].data = at;
 }
 
+/* cd/m2. */
+static float mean_bright(const cpu_view *s) {
+    const struct core_context ctx = { .at.bright = s->block_bright };
+    float sum[BRIGHT_COLUMNS];
+    for (u1 k = 0; k < BRIGHT_COLUMNS; k++)
+        sum[k] = column_bright(&ctx, k, (u1)s->b.blocks_x * (u1)s->b.blocks_y);
+    return sum_in_halves(sum, BRIGHT_COLUMNS) / ((float)s->b.width * (float)s->b.height);
+}
+
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
-    double bright = 0;
     if (!frame->plan->learns)
         return;
     for (int i = 0; i < s->worker_count; i++)
@@ -270,21 +270,22 @@ void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];
         s->observations[i] = (noc_observations){ s->workers[t->worker].lists->observed.data + t->first, t->count };
-        bright += t->bright;
     }
     noc_learned_add(s->learned, s->pool, s->observations, tiles);
-    s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
+    s->list_brightness = mean_bright(s);
 }
 
 void noc_cpu_release_tiles(cpu_view *s) {
     free(s->learned_tiles);
     free(s->observations);
+    free(s->block_bright);
     for (int i = 0; i < s->worker_count; i++)
         if (s->workers[i].lists) {
             array_free(&s->workers[i].lists->observed);
             array_free(&s->workers[i].lists->observations);
         }
     s->observations = NULL;
+    s->block_bright = NULL;
     s->learned_tiles = NULL;
 }
 

@@ -152,7 +152,25 @@ FN void drawn_store(CTX u32 ray, mask on, list_drawn d) {
         a->weighed[k[l]][ctx->at.lane + l] = w[l];
     }
 }
-FN real drawn_times(CTX u1 ray) { return rload(ctx->at.asked->times[ray] + ctx->at.lane); }
+FN real drawn_times(CTX u1 ray) {
+    float times[LANES];
+    for (int l = 0; l < LANES; l++)
+        times[l] = ctx->at.found[ray].times[ctx->at.lane + l];
+    return rload(times);
+}
+FN list_found found_of(CTX u32 ray) {
+    uint32_t of[LANES], entry[LANES];
+    float times[LANES], w[LANES], p[LANES];
+    ustore(of, ray);
+    for (int i = 0, l = ctx->at.lane; i < LANES; i++, l++) {
+        const ray_draw *d = &ctx->at.found[of[i]];
+        entry[i] = d->entry[l];
+        times[i] = d->times[l];
+        w[i] = d->r.w[l];
+        p[i] = d->r.p[l];
+    }
+    return (list_found){ uload(entry), rload(times), rload(w), rload(p) };
+}
 FN real found_p(CTX u1 ray) { return rload(ctx->at.found[ray].r.p + ctx->at.lane); }
 FN real found_w(CTX u1 ray) { return rload(ctx->at.found[ray].r.w + ctx->at.lane); }
 
@@ -211,8 +229,8 @@ static void list_share(const struct core_context *tile, const gblock *g, uint32_
         }
 }
 
-static void list_ray_of(const struct core_context *tile, const gblock *g, int x, int y, list_asked *asked, int k,
-                        rblock *out, cblock *brings, rayblock *way) {
+static void list_ray_of(const struct core_context *tile, int x, int y, list_asked *asked, int k, ray_draw *out,
+                        rayblock *way) {
     struct core_context block = *tile, *ctx = &block;
     ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
@@ -222,37 +240,38 @@ static void list_ray_of(const struct core_context *tile, const gblock *g, int x,
         light to = light_load(ctx, entry_light(ctx, d.entry));
         list_ray r = list_ask(ctx, s, sums_load(asked, l), rload(asked->n + l), key_of(ctx, x, y, l), d, to);
         segment between = segment_to(s.p, s.n, to, r.at, K(ctx->ray_offset));
-        ustore(out->light + l, r.light);
-        rstore(out->u + l, r.u);
-        rstore(out->v + l, r.v);
-        rstore(out->w + l, r.w);
-        rstore(out->p + l, r.p);
-        rstore(brings->rgb[0] + l, r.brings.x);
-        rstore(brings->rgb[1] + l, r.brings.y);
-        rstore(brings->rgb[2] + l, r.brings.z);
+        ustore(out->r.light + l, r.light);
+        rstore(out->r.u + l, r.u);
+        rstore(out->r.v + l, r.v);
+        rstore(out->r.w + l, r.w);
+        rstore(out->r.p + l, r.p);
+        rstore(out->brings.rgb[0] + l, r.brings.x);
+        rstore(out->brings.rgb[1] + l, r.brings.y);
+        rstore(out->brings.rgb[2] + l, r.brings.z);
         ray_store(way, l, between.o, between.d);
     }
-}
-
-static void list_show(const struct core_context *tile, int x, int y, list_asked *asked, uint32_t ray[BLOCK]) {
-    struct core_context block = *tile, *ctx = &block;
-    ctx->at.asked = asked;
-    for (int l = 0; l < BLOCK; l += LANES) {
-        ctx->at.lane = l;
-        ustore(ray + l,
-               list_shown(ctx, (u1)asked->most, rload(asked->n + l), rng(key_of(ctx, x, y, l), KU(DIM_LIST_SHOWN))));
+    for (int l = 0; l < BLOCK; l++) {
+        out->entry[l] = (uint8_t)asked->entry[k][l];
+        out->times[l] = (uint8_t)asked->times[k][l];
     }
 }
 
-static void list_keep(const struct core_context *tile, int x, int y, const ray_draw *found, int rays,
-                      uint32_t ray[BLOCK], float w[BLOCK]) {
+static void stand_ins(const struct core_context *tile, int x, int y, const ray_draw *found, int rays,
+                      const float n[BLOCK], rblock *out) {
     struct core_context block = *tile, *ctx = &block;
     ctx->at.found = found;
     for (int l = 0; l < BLOCK; l += LANES) {
         ctx->at.lane = l;
-        list_kept kept = list_resample(ctx, (u1)rays, rng(key_of(ctx, x, y, l), KU(DIM_LIST_KEPT)));
-        ustore(ray + l, kept.ray);
-        rstore(w + l, kept.w);
+        reservoir_store(out, l, list_stand_in(ctx, key_of(ctx, x, y, l), (u1)rays, rload(n + l), rload(out->m + l)));
+    }
+}
+
+static void resample_rays(const struct core_context *tile, int x, int y, const ray_draw *found, int rays, rblock *out) {
+    struct core_context block = *tile, *ctx = &block;
+    ctx->at.found = found;
+    for (int l = 0; l < BLOCK; l += LANES) {
+        ctx->at.lane = l;
+        reservoir_store(out, l, list_resampled(ctx, key_of(ctx, x, y, l), (u1)rays, reservoir_load(out, l)));
     }
 }
 
