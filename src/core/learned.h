@@ -139,6 +139,9 @@ FN1 cell_key cell_key_at(frame_camera c, f3 p, f3 n, f1 depth) {
     return cell_key_of(p, n, cell_level(cell_side(c, depth)));
 }
 
+/* The first cell of a key's run; a table has so many cells, a power of two. */
+FN1 u1 cell_run(cell_key k, u1 cells) { return (k.place * CELL_RUN) & (cells - 1u); }
+
 FN1 b1 cell_same(cell_key a, cell_key b) { return a.place == b.place && a.check == b.check; }
 
 #endif

@@ -17,9 +17,6 @@
 FN u1 cell_load(CTX u1 cell, u1 word);
 FN void cell_store(CTX u1 cell, u1 word, u1 x);
 
-/* The first cell of a key's run; a table has so many cells, a power of two. */
-FN1 u1 cell_run(cell_key k, u1 cells) { return (k.place * CELL_RUN) & (cells - 1u); }
-
 /* NO_CELL where nothing is known. */
 FN1 u1 cell_find(CTX cell_key k, u1 cells) {
     u1 first = cell_run(k, cells);
@@ -89,22 +86,31 @@ FN1 u1 cell_give_way(CTX u1 cell, u1 id) {
     return at;
 }
 
-/* So many rays from the cell asked for the light, 1 to 2^15, and so many of them saw it. */
-FN1 void cell_count(CTX u1 cell, u1 id, u1 asked, u1 seen) {
+/* So many rays from the cell to one light, 1 to 2^15, of which so many arrived, in the counts of all lights. */
+FN1 void cell_count_all(CTX u1 cell, u1 asked, u1 seen) {
     u1 age = 0u;
     if (cell_load(PASS cell, CELL_ASKED) > MOST_ASKED_ALL)
         age = 1u;
     cell_store(PASS cell, CELL_ASKED, shr(cell_load(PASS cell, CELL_ASKED), age) + asked);
     cell_store(PASS cell, CELL_SEEN, shr(cell_load(PASS cell, CELL_SEEN), age) + seen);
+}
+
+/* In the counts of that light, which are of its set alone. */
+FN1 void cell_count_light(CTX u1 cell, u1 id, u1 asked, u1 seen) {
     u1 at = cell_light(PASS cell, id);
     if (at == CELL_LIGHTS)
         at = cell_give_way(PASS cell, id);
     u1 counts = cell_load(PASS cell, CELL_COUNTS + at);
-    age = 0u;
+    u1 age = 0u;
     if (asked_of(counts) > MOST_ASKED)
         age = 1u;
     cell_store(PASS cell, CELL_COUNTS + at,
                (shr(asked_of(counts), age) + asked) | shl(shr(seen_of(counts), age) + seen, 16));
+}
+
+FN1 void cell_count(CTX u1 cell, u1 id, u1 asked, u1 seen) {
+    cell_count_all(PASS cell, asked, seen);
+    cell_count_light(PASS cell, id, asked, seen);
 }
 
 #endif

@@ -10,6 +10,7 @@
 #define CORE_LIST_RAYS_H
 
 #include "core/list_faces.h"
+#include "core/list_mix.h"
 #include "core/lists.h"
 
 /* Sums over entries: steer * share, and steer * expect, cd/m2. steer: the target, about, where a light is far. */
@@ -309,16 +310,6 @@ FN reservoir list_resampled(CTX u32 key, u1 rays, reservoir own) {
     list_found f = found_of(PASS kept.ray);
     own.w = K(0.0f);
     return reservoir_sel(kept.w > K(0.0f), list_sample(PASS key, f.entry, kept.w, f.p, own.m), own);
-}
-
-/* What of a pixel's light its reservoir of M = m shows, where the frames behind it are reused; its rays, of one frame's
- * M, show the rest. Both are unbiased, so any mixture is whose shares are fixed before either is drawn. M tells how
- * many frames stand behind the reservoir, whatever they found; its sample has the luminance of all of them, but one
- * light's colour. */
-FN real list_reused(real m, f1 frame) {
-    real past = max_(m - K(frame), K(0.0f));
-    EXACT real share = past / (past + K(2.0f * frame));
-    return share;
 }
 
 #endif

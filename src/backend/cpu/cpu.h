@@ -43,8 +43,9 @@ typedef struct ray_batch {
 
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
-    list_asked asked;                     /* of the block at hand */
-    size_t at[TILE_BLOCKS * TILE_BLOCKS]; /* the tile's blocks in the picture */
+    list_asked asked;                          /* of the block at hand */
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];      /* the tile's blocks in the picture */
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS]; /* that see a surface */
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
     float n[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* draws of pixels */
     int cells, count;

@@ -75,25 +75,33 @@ static tile_block block_in_picture(const stage_run *run, size_t at) {
     return (tile_block){ at, (int)(at % wide) * BLOCK_SIDE, (int)(at / wide) * BLOCK_SIDE };
 }
 
-/* The reservoirs that stand for block n's pixels in views of the candidates, by its rays from number `first` on. */
-static void stand_in(const stage_run *run, tile_rays *t, const struct core_context *ctx, int first) {
+/* Reservoirs that stand for the pixels of block n, whose rays are from number `first` on; without rays they are empty.
+ * M does not depend on what is found. */
+static void stand_in(const stage_run *run, worker *w, int n, int first, rblock *r) {
+    const tile_rays *t = &w->lists->rays;
     const ray_draw *d = &t->draws[first];
-    tile_block b = block_in_picture(run, t->at[d->block]);
-    run->k->list_stand_in(ctx, b.x, b.y, d, d->rays, t->n[d->block], &run->s->b.r[run->stage->target][b.at]);
-}
-
-/* Reservoirs without samples. M must not depend on what is found. */
-static void clear_block(rblock *r, uint32_t lanes, float m) {
+    tile_block b = block_in_picture(run, t->at[n]);
+    struct core_context ctx = run->ctx;
+    ctx.at.lists = &w->lists->build;
     *r = (rblock){ 0 };
     for (int l = 0; l < BLOCK; l++) {
         r->u[l] = r->v[l] = 0.5f;
-        r->m[l] = lanes >> l & 1 ? m : 0;
+        r->m[l] = t->lanes[n] >> l & 1 ? (float)ctx.frame->draws : 0;
     }
+    if (first < t->count && d->block == n)
+        run->k->list_stand_in(&ctx, b.x, b.y, d, d->rays, t->n[n], r);
+}
+
+/* For views of the candidates, before it is known which of them are seen. */
+static void show_candidates(const stage_run *run, worker *w, int n, int first) {
+    const tile_rays *t = &w->lists->rays;
+    rblock shown;
+    stand_in(run, w, n, first, &shown);
+    noc_cpu_note_candidates(run, w, n, t->at[n], t->lanes[n], &shown);
 }
 
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points) {
     struct core_context ctx = run->ctx;
-    frame_buffers *b = &run->s->b;
     tile_rays *t = &w->lists->rays;
     ctx.at.lists = &w->lists->build;
     t->count = t->cells = 0;
@@ -102,28 +110,24 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     run->k->list_fill(&ctx);
     for (int n = 0; n < points->count; n++) {
         tile_block at = points->block[n];
-        uint32_t lanes = points->lanes[n];
-        rblock *r = &b->r[run->stage->target][t->at[n] = at.at];
-        b->visible[run->stage->target][at.at] = 0;
-        clear_block(r, lanes, (float)ctx.frame->draws);
+        int first = t->count;
+        t->at[n] = at.at;
+        t->lanes[n] = points->lanes[n];
         if (learns)
             run->s->block_bright[at.at] = 0;
-        if (!lanes || !ctx.at.lists->list.count)
+        if (!t->lanes[n] || !ctx.at.lists->list.count)
             continue;
-        t->cell_of[n] = find_priors(run, points->g[n], lanes, &w->lists->build.list, t);
+        t->cell_of[n] = find_priors(run, points->g[n], t->lanes[n], &w->lists->build.list, t);
         t->asked.fresh = asks ? t->fresh[n] : 0;
-        run->k->list_share(&ctx, points->g[n], lanes, at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors,
+        run->k->list_share(&ctx, points->g[n], t->lanes[n], at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors,
                            &t->asked);
         memcpy(t->n[n], t->asked.n, sizeof(t->n[n]));
         if (learns)
             run->s->block_bright[at.at] = sum_in_halves(t->asked.bright, BLOCK);
         for (int k = 0; k < t->asked.most; k++)
             add_rays(run, t, &ctx, n, k, at.x, at.y);
-        if (!run->frame->params->aovs)
-            continue;
-        if (t->asked.most)
-            stand_in(run, t, &ctx, t->count - t->asked.most);
-        noc_cpu_note_candidates(run, w, n, at.at, lanes, r);
+        if (run->frame->params->aovs)
+            show_candidates(run, w, n, first);
     }
 }
 
@@ -178,8 +182,6 @@ void noc_cpu_resample(stage_run *run, worker *w, tile at) {
 
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->lists->rays;
-    struct core_context ctx = run->ctx;
-    ctx.at.lists = &w->lists->build;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, t->segments, t->count);
     else
@@ -187,8 +189,12 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
             t->segments[i].unoccluded = t->segments[i].valid;
     for (int i = 0; i < t->count; i++)
         block_samples(&t->draws[i].r, ~t->segments[i].unoccluded);
-    for (int i = 0; i < t->count; i += t->draws[i].rays)
-        stand_in(run, t, &ctx, i);
+    for (int n = 0, i = 0; n < (at.y1 - at.y0) * (at.x1 - at.x0); n++) {
+        stand_in(run, w, n, i, &run->s->b.r[run->stage->target][t->at[n]]);
+        run->s->b.visible[run->stage->target][t->at[n]] = 0;
+        while (i < t->count && t->draws[i].block == n)
+            i++;
+    }
     if (run->frame->plan->learns)
         note_observations(run, w, at);
 }
