@@ -15,7 +15,8 @@ MACHINE = set("""backend.c backend.h blocks.h cpu.h device.c embree.c embree.h f
     lights.c many.c moved.c rays.c room.c rt.h scratch.c structure.c tracer.h view.c parts.c parts.h host.c memory.c
     pipelines.c readback.c records.h schedule.c schedule.h shaders.h floor.c volk.c vulkan.h world.c bridge.glsl
     payload.glsl pixel.glsl trace.glsl trace_closest.rchit trace_closest.rgen trace_closest.rmiss trace_occlusion.rchit
-    trace_occlusion.rgen trace_occlusion.rmiss""".split())
+    trace_occlusion.rgen trace_occlusion.rmiss lists.c list_memory.h list_group.glsl list_tile.glsl
+    list_pixel.glsl""".split())
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
 
 

@@ -44,10 +44,15 @@ static void move_in(const noc_cell *cell, noc_cell *cells, size_t count) {
     *to = *cell;
 }
 
-noc_status noc_learned_fit(noc_learned *t, size_t tiles, noc_log *log) {
+size_t noc_learned_cells(size_t tiles) {
     size_t count = LEAST_CELLS;
     while (count < 4 * tiles && count < MOST_CELLS)
         count *= 2;
+    return count;
+}
+
+noc_status noc_learned_fit(noc_learned *t, size_t tiles, noc_log *log) {
+    size_t count = noc_learned_cells(tiles);
     if (count <= t->count)
         return NOC_OK;
     noc_cell *cells = noc_alloc_large(count, sizeof(*cells));

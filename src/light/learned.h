@@ -45,6 +45,7 @@ typedef struct noc_observations {
 noc_learned *noc_learned_create(size_t tiles, noc_log *log);
 void noc_learned_destroy(noc_learned *learned); /* NULL is allowed */
 void noc_learned_forget(noc_learned *learned);
+size_t noc_learned_cells(size_t tiles); /* a power of two */
 /* Has room for a picture of so many tiles at least, and keeps all that is known. NOC_ERR_MEMORY after reporting it:
  * then all is as it was. */
 noc_status noc_learned_fit(noc_learned *learned, size_t tiles, noc_log *log) NOC_MUST_USE;

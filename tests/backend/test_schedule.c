@@ -37,12 +37,12 @@ static vk_facts facts_for(const noc_render_params *p, bool map, int history, fra
                        .sky = p->sky > 0 || map,
                        .lights = 5000,
                        .blocks_x = 80,
-                       .blocks_y = 45 };
+                       .blocks_y = 45,
+                       .tile_words = noc_vk_tile_words(2),
+                       .list_bytes = 64 << 20 };
 }
 
-static bool known(const noc_plan *plan) {
-    return !plan->draws || (plan->candidates != NOC_CANDIDATES_LISTS && plan->candidates != NOC_CANDIDATES_INFLUENCE);
-}
+static bool known(const noc_plan *plan) { return !plan->draws || plan->candidates != NOC_CANDIDATES_INFLUENCE; }
 
 /* All steps of a frame, with their barriers. */
 static void schedule(const noc_plan *plan, const vk_facts *facts, vk_steps *steps) {
@@ -50,7 +50,7 @@ static void schedule(const noc_plan *plan, const vk_facts *facts, vk_steps *step
     steps->len = 0;
     for (int i = 0; i < plan->count; i++)
         assert_true(noc_vk_schedule(plan, &plan->stages[i], facts, steps));
-    assert_true(noc_vk_schedule_mean(facts, steps));
+    assert_true(noc_vk_schedule_mean(plan, facts, steps));
     for (size_t i = 0; i < steps->len; i++)
         noc_vk_find_wait(&hazards, &steps->data[i]);
 }
@@ -113,16 +113,17 @@ static void each_barrier_is_needed(void **state) {
 
 /* What a pass of the plan reads and writes, as resources. */
 static uint32_t resources(const noc_stage *s, uint32_t buffers) {
-    static const int of[NOC_BUFFER_COUNT] = { [NOC_BUFFER_SURFACES] = VK_RESOURCE_SURFACES,
-                                              [NOC_BUFFER_PREVIOUS] = VK_RESOURCE_PREVIOUS,
-                                              [NOC_BUFFER_COLOUR] = VK_RESOURCE_COLOUR,
-                                              [NOC_BUFFER_PICTURE] = VK_RESOURCE_PICTURE };
+    static const uint32_t of[NOC_BUFFER_COUNT] = { [NOC_BUFFER_SURFACES] = 1u << VK_RESOURCE_SURFACES,
+                                                   [NOC_BUFFER_PREVIOUS] = 1u << VK_RESOURCE_PREVIOUS,
+                                                   [NOC_BUFFER_CACHE] = 1u << VK_RESOURCE_CACHE,
+                                                   [NOC_BUFFER_COLOUR] = 1u << VK_RESOURCE_COLOUR,
+                                                   [NOC_BUFFER_PICTURE] = 1u << VK_RESOURCE_PICTURE };
     uint32_t out = 0;
     for (int i = 0; i < NOC_BUFFER_COUNT; i++)
         if (buffers >> i & 1)
-            out |= 1u << (i == NOC_BUFFER_RESERVOIRS ? VK_RESOURCE_SET + s->target
-                          : i == NOC_BUFFER_SOURCE   ? VK_RESOURCE_SET + s->source
-                                                     : of[i]);
+            out |= i == NOC_BUFFER_RESERVOIRS ? 1u << (VK_RESOURCE_SET + s->target)
+                   : i == NOC_BUFFER_SOURCE   ? 1u << (VK_RESOURCE_SET + s->source)
+                                              : of[i];
     return out;
 }
 
@@ -130,7 +131,8 @@ static void check_tables(const noc_render_params *p, const noc_plan *plan, int h
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
     uint32_t own = 1u << VK_RESOURCE_RAYS | 1u << VK_RESOURCE_ANSWERS | 1u << VK_RESOURCE_HITS |
-                   1u << VK_RESOURCE_SAMPLES | 1u << VK_RESOURCE_SCRATCH;
+                   1u << VK_RESOURCE_SAMPLES | 1u << VK_RESOURCE_SCRATCH | 1u << VK_RESOURCE_OBSERVED |
+                   1u << VK_RESOURCE_BRIGHT;
     (void)surfaces;
     if (!known(plan))
         return;

@@ -97,7 +97,7 @@ static inline void answer_occlusion(const twins *t, bool past, const rayblock *r
 static inline noc_status answer_by_cpu(void *user, const vk_step *step) {
     const twins *t = user;
     vk_view *v = gpu_of(t);
-    size_t blocks = (size_t)v->b.blocks_x * v->b.blocks_y * (size_t)step->slots;
+    size_t blocks = noc_vk_step_rays(step, v->b.blocks_x, v->b.blocks_y) / BLOCK;
     rayblock *rays = noc_alloc_large(blocks, sizeof(*rays));
     uint32_t(*answers)[BLOCK] = noc_alloc_large(blocks, sizeof(*answers));
     uint32_t(*hits)[5][BLOCK] = noc_alloc_large(blocks, sizeof(*hits));

@@ -148,6 +148,9 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
         return noc_no_memory(log, "device");
     d->log = log;
     d->params = *params;
+    d->workers[0] = 256;
+    d->workers[1] = 64;
+    d->list_bytes = (size_t)256 << 20;
     pthread_mutex_init(&d->lock, NULL);
     pthread_mutex_init(&d->host_lock, NULL);
     noc_status status = (d->pool = noc_pool_create(params->threads)) ? NOC_OK : noc_no_memory(log, "device");

@@ -18,7 +18,7 @@ static noc_status copy(vk_view *v, VkCommandBuffer commands, const vk_buffer *fr
 
 noc_status noc_vk_keep_rays(vk_view *v, const vk_step *step) {
     VkCommandBuffer commands = v->flights[v->flight].commands;
-    VkDeviceSize slots = (VkDeviceSize)v->b.blocks_x * v->b.blocks_y * BLOCK * (VkDeviceSize)step->slots;
+    VkDeviceSize slots = noc_vk_step_rays(step, v->b.blocks_x, v->b.blocks_y);
     if (!array_push(&v->kept, (vk_kept_rays){ .step = *step }))
         return noc_no_memory(v->log, "render");
     vk_kept_rays *kept = &v->kept.data[v->kept.len - 1];

@@ -1,8 +1,10 @@
 /* A frame as one command buffer: stages are recorded as their steps (schedule.h), and the frame is submitted when it is
  * complete. A frame that is dropped before that leaves nothing behind but what followed the scene. Two frames of a view
  * may be in flight; figures are those of the last finished one. */
+#include "backend/vulkan/list_memory.h"
 #include "backend/vulkan/schedule.h"
 #include "backend/vulkan/vulkan.h"
+#include "core/learned.h"
 
 enum { GROUP = 64 }; /* invocations of a work group over pixels: four blocks in a row */
 
@@ -29,6 +31,13 @@ static void take_counts(vk_view *v, vk_flight *f) {
     f->found.rays_shadow = sums[VK_COUNT_RAYS];
     f->found.dropped = v->stats.dropped + sums[VK_COUNT_DROPPED];
     v->stats = f->found;
+    if (sums[VK_COUNT_UNLEARNED] && !v->learning.told) {
+        v->learning.told = true;
+        noc_warn(v->log,
+                 "vulkan: there is no room to learn the lights' visibility in all of a picture of %d x %d: it is "
+                 "noisier than it could be",
+                 v->b.width, v->b.height);
+    }
 }
 
 /* Waits for a frame, and adds up what it counted. */
@@ -55,6 +64,14 @@ noc_status noc_vk_finish_flights(vk_view *v) {
 
 /* ---- recording ---- */
 
+/* Levels of the deeper hierarchy of clusters. */
+static int cluster_levels(const noc_light_sources *s) {
+    int levels = 0;
+    for (int i = 0; i < NOC_HALVES; i++)
+        levels = NOC_MAX(levels, s->clusters[i] ? s->clusters[i]->levels : 0);
+    return levels;
+}
+
 static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
     return (vk_facts){ .constants = &frame->constants,
                        .history = frame->constants.flags & FRAME_HISTORY && !v->past.lost,
@@ -64,6 +81,8 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
+                       .tile_words = noc_vk_tile_words(cluster_levels(&v->sources)),
+                       .list_bytes = v->device->list_bytes,
                        .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
 }
 
@@ -71,6 +90,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
 static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
     const vk_world *w = v->world;
     const vk_picture *b = &v->b;
+    const vk_learning *l = &v->learning;
     bool all = frame->accumulated == 0;
     return (vk_binding){
         .frame = v->flights[v->flight].constants.address,
@@ -107,6 +127,10 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .hits = b->hits.address,
         .samples = v->samples.address,
         .scratch = v->scratch.address,
+        .clusters = w->clusters.buffer.address,
+        .learned = l->cache.address,
+        .observed = l->observed.address,
+        .block_bright = l->bright.address,
         .counters = v->counters.address,
         .view_rays = v->views.gathered[NOC_AOV_RAYS].address,
         .view_density = v->views.gathered[NOC_AOV_DENSITY].address,
@@ -123,7 +147,6 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .textured = v->scene->texels.len > 0,
         .instanced = b->instance.bytes > 0,
         .moved = b->instance.bytes > 0 && noc_past_other_shape(&v->past, v->scene),
-        .slots = b->blocks_x * b->blocks_y * BLOCK,
         .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,
         .subsets = v->subsets,
@@ -134,6 +157,14 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .fresh = all,
         .share = all ? 1 : (float)(1.0 / (double)(frame->accumulated + 1)),
         .ray_offset = w->scale.offset,
+        .tiles_x = noc_vk_tiles(b->blocks_x),
+        .tile_words = facts_of(v, frame).tile_words,
+        .list_flags = (frame->plan->learns ? LIST_LEARNS : 0) | (frame->plan->mixes ? LIST_MIXES : 0) |
+                      (noc_stage_has(&frame->plan->stages[0], NOC_PASS_SEEN_BEFORE) ? LIST_FRESH : 0),
+        .list_room = l->room,
+        .observed_rows = l->rows,
+        .cells = l->cells,
+        .learn_time = l->next_time,
     };
 }
 
@@ -145,6 +176,12 @@ static void mark_time(vk_view *v, noc_pass pass) {
     vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, (uint32_t)f->times_count);
 }
 
+/* So many invocations, in a plane of work groups: a row has room for 65,535 of these at least. */
+static void dispatch_many(VkCommandBuffer commands, uint32_t invocations) {
+    uint32_t groups = (invocations + GROUP - 1) / GROUP, wide = NOC_MIN(groups, 1024u);
+    vkCmdDispatch(commands, wide, (groups + wide - 1) / wide, 1);
+}
+
 static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
     const vk_picture *b = &v->b;
     uint32_t rows = step->rows ? step->rows : b->blocks_y;
@@ -152,6 +189,18 @@ static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
     static const VkStridedDeviceAddressRegionKHR none = { 0 };
     switch (step->domain) {
     case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, 1); break;
+    case VK_DOMAIN_LAYERS:
+        vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, (uint32_t)step->slots);
+        break;
+    case VK_DOMAIN_TILES: vkCmdDispatch(commands, noc_vk_tiles(b->blocks_x), noc_vk_tiles(rows), 1); break;
+    case VK_DOMAIN_BLOCKS: {
+        uint32_t blocks = v->device->workers[1] / BLOCK;
+        vkCmdDispatch(commands, (b->blocks_x + blocks - 1) / blocks, rows, 1);
+        break;
+    }
+    case VK_DOMAIN_ROWS: dispatch_many(commands, v->learning.rows); break;
+    case VK_DOMAIN_RUNS: dispatch_many(commands, v->learning.cells / CELL_RUN * 16); break;
+    case VK_DOMAIN_ONE: vkCmdDispatch(commands, 1, 1, 1); break;
     case VK_DOMAIN_SUBSETS: vkCmdDispatch(commands, v->subsets, 1, 1); break;
     case VK_DOMAIN_RAYS:
         vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, rows,
@@ -177,9 +226,11 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     b->target_visible = v->b.visible[step->target].address;
     b->dimension = step->dimension;
     b->first = step->first;
-    b->first_row = step->first_row;
-    b->rows = step->rows ? step->rows : v->b.blocks_y;
     bool traces = step->domain == VK_DOMAIN_RAYS;
+    b->first_row = traces && step->band ? 0 : step->first_row;
+    b->rows = step->rows ? step->rows : v->b.blocks_y;
+    b->slots = v->b.blocks_x * (step->band ? step->rows : v->b.blocks_y) * BLOCK;
+    b->pixels_at = noc_vk_tiles(v->b.blocks_x) * noc_vk_tiles(b->rows) * b->tile_words;
     VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
     VkDeviceAddress address = f->constants.address + at;
     if (step->wait)
@@ -275,12 +326,10 @@ static noc_status refuse(const vk_view *v, const noc_frame *frame) {
         return noc_error(v->log, NOC_ERR_UNSUPPORTED,
                          "vulkan: no view \"%s\" of candidates lists and influence on this backend yet",
                          noc_aov_name((noc_aov)__builtin_ctz(missing)));
-    if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_LISTS)
-        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
-                         "vulkan: no candidates \"lists\" on this backend yet (there are uniform and power)");
     if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_INFLUENCE)
-        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
-                         "vulkan: no candidates \"influence\" on this backend yet (there are uniform and power)");
+        return noc_error(
+            v->log, NOC_ERR_UNSUPPORTED,
+            "vulkan: no candidates \"influence\" on this backend yet (there are lists, uniform, power and light-bvh)");
     return NOC_OK;
 }
 
@@ -292,14 +341,15 @@ static bool shares(const noc_plan *plan) {
 /* Room for the rays of the plan's steps, and for scratch. */
 static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
     vk_facts facts = facts_of(v, frame);
-    int slots = 1;
+    size_t rays = 0;
     for (int i = 0; i < frame->plan->count; i++) {
         v->steps.len = 0;
         if (!noc_vk_schedule(frame->plan, &frame->plan->stages[i], &facts, &v->steps))
             return noc_no_memory(v->log, "render");
-        slots = NOC_MAX(slots, noc_vk_slots(&v->steps));
+        rays = NOC_MAX(rays, noc_vk_ray_room(&v->steps, &facts));
     }
-    return noc_vk_view_fit(v, slots, noc_vk_scratch_bytes(frame->plan, &facts));
+    noc_status status = noc_vk_view_fit(v, rays, noc_vk_scratch_bytes(frame->plan, &facts));
+    return status == NOC_OK && frame->plan->learns ? noc_vk_view_fit_learning(v, &frame->constants) : status;
 }
 
 static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
@@ -360,6 +410,8 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
     v->hazards = (vk_hazards){ 0 };
     vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
     noc_vk_clear_views(v, f->commands);
+    if (frame->plan->learns)
+        noc_vk_begin_learning(v, frame->epoch, f->commands);
     noc_vk_barrier(f->commands);
     start_times(v->device, f);
     return NOC_OK;
@@ -424,12 +476,14 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     vk_facts facts = facts_of(v, frame);
     noc_past past = v->past;
     v->steps.len = 0;
-    noc_status status =
-        noc_vk_schedule_mean(&facts, &v->steps) ? record(v, frame, &v->steps) : noc_no_memory(v->log, "render");
+    noc_status status = noc_vk_schedule_mean(frame->plan, &facts, &v->steps) ? record(v, frame, &v->steps)
+                                                                             : noc_no_memory(v->log, "render");
     if (status == NOC_OK)
         status = submit(v);
     if (status == NOC_OK)
         status = noc_vk_keep_views(v, frame, &past);
+    if (status == NOC_OK && frame->plan->learns)
+        noc_vk_end_learning(v);
     if (status == NOC_OK)
         v->coverage_frames = frame->accumulated + 1;
     return drop(v, status);
@@ -481,7 +535,6 @@ noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
     vk_binding common = { .frame = f->constants.address, /* of an earlier frame: its width is all that is read */
                           .hits = b->hits.address,
                           .counters = v->counters.address,
-                          .slots = b->blocks_x * b->blocks_y * BLOCK,
                           .blocks_y = b->blocks_y };
     VkResult result = begin_commands(f);
     noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");

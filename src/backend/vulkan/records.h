@@ -19,7 +19,8 @@ struct vk_instance_record {
 #define VK_COUNTERS 64 /* of each kind; invocations spread over them */
 #define VK_COUNT_RAYS 0
 #define VK_COUNT_DROPPED 1
-#define VK_COUNT_KINDS 2
+#define VK_COUNT_UNLEARNED 2 /* cells of tiles whose observations had no room */
+#define VK_COUNT_KINDS 3
 
 /* Fields of a dispatch's record: ADDRESS(type in shaders, name), then WORD(type, name). */
 #define VK_BINDING(ADDRESS, WORD)                                                                                      \
@@ -60,7 +61,11 @@ struct vk_instance_record {
     ADDRESS(Words, answers)                                                                                            \
     ADDRESS(HitBlocks, hits)                                                                                           \
     ADDRESS(SampleRows, samples)                                                                                       \
-    ADDRESS(Words, scratch) /* of a band of the picture */                                                             \
+    ADDRESS(Words, scratch)  /* of a band of the picture */                                                            \
+    ADDRESS(Words, clusters) /* a head of 16 words a hierarchy: shaders/list_tile.glsl */                              \
+    ADDRESS(Words, learned)  /* the visibility cache, and the next two: list_memory.h */                               \
+    ADDRESS(Words, observed)                                                                                           \
+    ADDRESS(Floats, block_bright)                                                                                      \
     ADDRESS(Words, counters)                                                                                           \
     ADDRESS(Words, view_rays) /* a count; the others as noc_views.made has what views gather */                        \
     ADDRESS(Floats, view_density)                                                                                      \
@@ -74,7 +79,7 @@ struct vk_instance_record {
     WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
     WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
-    WORD(uint32_t, slots)     /* pixels of the picture's blocks: rays of one slot */                                   \
+    WORD(uint32_t, slots)     /* pixels of the blocks whose rays are kept at once: rays of one slot */                 \
     WORD(uint32_t, blocks_y)                                                                                           \
     WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
     WORD(uint32_t, subsets)                                                                                            \
@@ -91,7 +96,15 @@ struct vk_instance_record {
     WORD(uint32_t, by_power)      /* 1: candidates are drawn by power */                                               \
     WORD(uint32_t, fresh)         /* 1: the mean begins with this frame */                                             \
     WORD(float, share)            /* of this frame in the mean */                                                      \
-    WORD(float, ray_offset)
+    WORD(float, ray_offset)                                                                                            \
+    WORD(uint32_t, tiles_x)                                                                                            \
+    WORD(uint32_t, tile_words) /* lists: of each tile in scratch; and where its pixels are there */                    \
+    WORD(uint32_t, pixels_at)                                                                                          \
+    WORD(uint32_t, list_flags)                                                                                         \
+    WORD(uint32_t, list_room)     /* entries of a list at most */                                                      \
+    WORD(uint32_t, observed_rows) /* that there is room for */                                                         \
+    WORD(uint32_t, cells)         /* of the visibility cache, and its time */                                          \
+    WORD(uint32_t, learn_time)
 
 #define VK_VIEW_RAYS 1u
 #define VK_VIEW_DENSITY 2u

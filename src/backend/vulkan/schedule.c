@@ -1,6 +1,7 @@
 /* From the passes of a stage to dispatches: see schedule.h. */
 #include "backend/vulkan/schedule.h"
 
+#include "backend/vulkan/list_memory.h"
 #include "core/random.h"
 
 #define R(resource) (1u << VK_RESOURCE_##resource)
@@ -48,11 +49,12 @@ static vk_step *add(scheduling *s, vk_shader shader, uint32_t reads, uint32_t wr
 }
 
 /* Answers `slots` rays a pixel that the step before has written. */
-static void trace(scheduling *s, int slots, bool past) {
+static vk_step *trace(scheduling *s, int slots, bool past) {
     vk_step *step = add(s, VK_SHADER_trace_occlusion, R(RAYS) | R(ANSWERS), R(ANSWERS));
     step->domain = VK_DOMAIN_RAYS;
     step->slots = slots;
     step->past = past;
+    return step;
 }
 
 static void primary(scheduling *s) {
@@ -187,50 +189,174 @@ static void sky(scheduling *s) {
     }
 }
 
-bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps) {
+/* ---- lists: their passes go through the picture by bands of tiles ---- */
+
+uint32_t noc_vk_tile_words(int levels) {
+    uint32_t groups =
+        2 * LIST_ROOTS / 16 + (uint32_t)NOC_MAX(levels - 1, 0) * OPENED_NODES + OPENED_CLUSTERS; /* not more than */
+    return TILE_SCORES + NOC_MAX(16 * NOC_MIN(groups, (uint32_t)LIST_GROUPS), (uint32_t)TILE_LATER);
+}
+
+/* Rays a pixel at most (core/list_rays.h): twice what it asks for, which is more where SEEN_BEFORE may say so. */
+static int list_slots(const noc_plan *plan, const vk_facts *f) {
+    uint32_t rays = f->constants->shadow_rays;
+    if (!plan->shares_rays)
+        return 0;
+    return (int)(2 * (plan->mixes ? NOC_MIN(2 * rays, 8u) : rays));
+}
+
+/* Words of scratch of a row of tiles. */
+static size_t list_row_words(const noc_plan *plan, const vk_facts *f) {
+    size_t pixel = PIXEL_RAYS + RAY_WORDS * (size_t)list_slots(plan, f);
+    return (size_t)noc_vk_tiles(f->blocks_x) * f->tile_words + (size_t)f->blocks_x * 4 * BLOCK * pixel;
+}
+
+/* Rows of blocks in a band. */
+static uint32_t list_band(const noc_plan *plan, const vk_facts *f) {
+    size_t rays = (size_t)f->blocks_x * 4 * BLOCK * (size_t)list_slots(plan, f);
+    size_t row = 4 * list_row_words(plan, f) + rays * (sizeof(rayblock) / BLOCK + 4);
+    return 4 * (uint32_t)NOC_CLAMP(f->list_bytes / row, (size_t)1, (size_t)noc_vk_tiles(f->blocks_y));
+}
+
+static vk_step *add_list(scheduling *s, vk_shader shader, vk_domain domain, uint32_t reads, uint32_t writes) {
+    vk_step *step = add(s, shader, reads | R(SCRATCH), writes);
+    step->domain = domain;
+    step->band = true;
+    return step;
+}
+
+static void build_list(scheduling *s) {
+    add_list(s, VK_SHADER_list_strongest, VK_DOMAIN_TILES, R(SURFACES), R(SCRATCH));
+    add_list(s, VK_SHADER_list_tail, VK_DOMAIN_TILES, 0, R(SCRATCH));
+}
+
+static void candidates_list(scheduling *s) {
+    add_list(s, VK_SHADER_list_candidates, VK_DOMAIN_PIXELS, R(SURFACES), set_bit(s->stage->target));
+}
+
+static void seen_before(scheduling *s) {
+    add_list(s, VK_SHADER_list_fresh, VK_DOMAIN_PIXELS, R(SURFACES) | R(PREVIOUS) | set_bit(s->stage->source),
+             R(SCRATCH));
+}
+
+static void share_rays(scheduling *s) {
+    bool learns = s->plan->learns;
+    add_list(s, VK_SHADER_list_fill, VK_DOMAIN_TILES, R(SURFACES) | (learns ? R(CACHE) : 0),
+             R(SCRATCH) | (learns ? R(OBSERVED) : 0));
+    add_list(s, VK_SHADER_list_share, VK_DOMAIN_BLOCKS, R(SURFACES) | (learns ? R(CACHE) : 0),
+             R(SCRATCH) | (learns ? R(BRIGHT) : 0));
+    add_list(s, VK_SHADER_list_ask, VK_DOMAIN_LAYERS, R(SURFACES), R(SCRATCH) | R(RAYS) | R(ANSWERS))->slots =
+        list_slots(s->plan, s->facts);
+}
+
+static void trace_shared(scheduling *s) {
+    bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
+    if (rays)
+        trace(s, list_slots(s->plan, s->facts), false)->band = true;
+    add_list(s, VK_SHADER_list_use, VK_DOMAIN_PIXELS, rays ? R(ANSWERS) : 0,
+             R(SCRATCH) | set_bit(s->stage->target) | (s->plan->learns ? R(OBSERVED) : 0));
+}
+
+static void resample(scheduling *s) {
+    uint32_t target = set_bit(s->stage->target);
+    add_list(s, VK_SHADER_list_resample, VK_DOMAIN_PIXELS, target, target);
+}
+
+static void shade_shared(scheduling *s) {
+    add_list(s, VK_SHADER_list_shade, VK_DOMAIN_PIXELS, set_bit(s->stage->target) | R(COLOUR), R(COLOUR));
+}
+
+/* ---- stages ---- */
+
+static void schedule_pass(scheduling *s, noc_pass pass) {
     static void (*const passes[NOC_PASS_COUNT])(scheduling *) = {
         [NOC_PASS_PRIMARY] = primary,
+        [NOC_PASS_BUILD_LIST] = build_list,
         [NOC_PASS_CANDIDATES_UNIFORM] = candidates_shared,
+        [NOC_PASS_CANDIDATES_LIST] = candidates_list,
         [NOC_PASS_CANDIDATES_POWER] = candidates_shared,
         [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_tree,
+        [NOC_PASS_SEEN_BEFORE] = seen_before,
+        [NOC_PASS_SHARE_RAYS] = share_rays,
         [NOC_PASS_VISIBILITY] = resolve,
+        [NOC_PASS_TRACE_SHARED] = trace_shared,
+        [NOC_PASS_RESAMPLE] = resample,
         [NOC_PASS_TEMPORAL] = temporal,
         [NOC_PASS_SPATIAL] = spatial,
         [NOC_PASS_EMITTERS] = emitters,
+        [NOC_PASS_SHADE_SHARED] = shade_shared,
         [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SHADE_ALL] = shade_all,
         [NOC_PASS_HEADLIGHT] = headlight,
         [NOC_PASS_SKY] = sky,
     };
+    bool without_lights =
+        pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY || pass == NOC_PASS_HEADLIGHT;
+    s->pass = pass;
+    if (passes[pass] && (s->facts->lights || without_lights))
+        passes[pass](s);
+}
+
+/* The passes of a stage from number `first` on that work on what a tile's list became, band by band. Returns the number
+ * of the next one. */
+static int schedule_lists(scheduling *s, int first) {
+    const vk_facts *f = s->facts;
+    uint32_t band = list_band(s->plan, f);
+    int end = first;
+    for (int i = first; i < s->stage->count; i++) {
+        noc_pass pass = s->stage->passes[i];
+        if (pass == NOC_PASS_CANDIDATES_LIST || pass == NOC_PASS_TRACE_SHARED || pass == NOC_PASS_RESAMPLE ||
+            pass == NOC_PASS_SHADE_SHARED)
+            end = i + 1;
+    }
+    for (uint32_t row = 0; row < f->blocks_y; row += band) {
+        size_t from = s->steps->len;
+        for (int i = first; i < end; i++)
+            schedule_pass(s, s->stage->passes[i]);
+        for (size_t i = from; i < s->steps->len; i++) {
+            s->steps->data[i].first_row = row;
+            s->steps->data[i].rows = NOC_MIN(band, f->blocks_y - row);
+        }
+    }
+    return end;
+}
+
+bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps) {
     scheduling s = { .plan = plan, .stage = stage, .facts = facts, .steps = steps };
-    for (int i = 0; i < stage->count; i++) {
-        s.pass = stage->passes[i];
-        bool without_lights = s.pass == NOC_PASS_PRIMARY || s.pass == NOC_PASS_EMITTERS || s.pass == NOC_PASS_SKY ||
-                              s.pass == NOC_PASS_HEADLIGHT;
-        if (passes[s.pass] && (facts->lights || without_lights))
-            passes[s.pass](&s);
+    for (int i = 0; i < stage->count;)
+        if (stage->passes[i] == NOC_PASS_BUILD_LIST)
+            i = schedule_lists(&s, i);
+        else
+            schedule_pass(&s, stage->passes[i++]);
+    return !s.no_memory;
+}
+
+bool noc_vk_schedule_mean(const noc_plan *plan, const vk_facts *facts, vk_steps *steps) {
+    scheduling s = { .facts = facts, .steps = steps, .pass = NOC_PASS_COUNT };
+    add(&s, VK_SHADER_mean, R(COLOUR) | R(SURFACES) | R(PICTURE) | R(COVERAGE), R(PICTURE) | R(COVERAGE));
+    if (plan->learns && facts->lights) {
+        add(&s, VK_SHADER_learn_bright, R(BRIGHT), R(CACHE))->domain = VK_DOMAIN_ONE;
+        add(&s, VK_SHADER_learn_sort, R(OBSERVED) | R(CACHE), R(OBSERVED) | R(CACHE))->domain = VK_DOMAIN_ROWS;
+        add(&s, VK_SHADER_learn_count, R(OBSERVED) | R(CACHE), R(CACHE))->domain = VK_DOMAIN_RUNS;
     }
     return !s.no_memory;
 }
 
-bool noc_vk_schedule_mean(const vk_facts *facts, vk_steps *steps) {
-    scheduling s = { .facts = facts, .steps = steps, .pass = NOC_PASS_COUNT };
-    add(&s, VK_SHADER_mean, R(COLOUR) | R(SURFACES) | R(PICTURE) | R(COVERAGE), R(PICTURE) | R(COVERAGE));
-    return !s.no_memory;
-}
-
-int noc_vk_slots(const vk_steps *steps) {
-    int most = 1;
+size_t noc_vk_ray_room(const vk_steps *steps, const vk_facts *facts) {
+    size_t most = (size_t)facts->blocks_x * facts->blocks_y * BLOCK;
     for (size_t i = 0; i < steps->len; i++)
-        most = NOC_MAX(most, steps->data[i].slots);
+        most = NOC_MAX(most, noc_vk_step_rays(&steps->data[i], facts->blocks_x, facts->blocks_y));
     return most;
 }
 
 size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *f) {
     size_t words = reference_words(f);
-    for (int i = 0; i < plan->count; i++)
+    for (int i = 0; i < plan->count; i++) {
         if (noc_stage_has(&plan->stages[i], NOC_PASS_SHADE_ALL))
             return (size_t)band_rows(f, words) * f->blocks_x * BLOCK * words * 4;
+        if (noc_stage_has(&plan->stages[i], NOC_PASS_BUILD_LIST))
+            return list_row_words(plan, f) * 4 * (list_band(plan, f) / 4);
+    }
     return 0;
 }
 

@@ -28,6 +28,19 @@
     COMPUTE(headlight)                                                                                                 \
     COMPUTE(sky_ask)                                                                                                   \
     COMPUTE(sky_use)                                                                                                   \
+    COMPUTE(list_strongest)                                                                                            \
+    COMPUTE(list_tail)                                                                                                 \
+    COMPUTE(list_fill)                                                                                                 \
+    COMPUTE(list_candidates)                                                                                           \
+    COMPUTE(list_fresh)                                                                                                \
+    COMPUTE(list_share)                                                                                                \
+    COMPUTE(list_ask)                                                                                                  \
+    COMPUTE(list_use)                                                                                                  \
+    COMPUTE(list_resample)                                                                                             \
+    COMPUTE(list_shade)                                                                                                \
+    COMPUTE(learn_bright)                                                                                              \
+    COMPUTE(learn_sort)                                                                                                \
+    COMPUTE(learn_count)                                                                                               \
     COMPUTE(mean)
 
 #define VK_SHADER_NAME(name) VK_SHADER_##name,

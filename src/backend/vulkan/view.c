@@ -84,25 +84,34 @@ noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
     return status;
 }
 
-noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch) {
+static noc_status fit_rays(vk_view *v, size_t rays) {
+    vk_picture *b = &v->b;
+    noc_status status = noc_vk_finish_flights(v);
+    noc_vk_free_buffer(v->device, &b->rays);
+    noc_vk_free_buffer(v->device, &b->answers);
+    b->bytes -= b->ray_room * (RAY_BYTES + ANSWER_BYTES);
+    b->ray_room = 0;
+    if (status == NOC_OK)
+        status = noc_vk_make_buffer(v->device, rays * RAY_BYTES, 0, VK_PLACE_DEVICE, "the rays of a frame", &b->rays);
+    if (status == NOC_OK)
+        status =
+            noc_vk_make_buffer(v->device, rays * ANSWER_BYTES, 0, VK_PLACE_DEVICE, "the rays of a frame", &b->answers);
+    if (status != NOC_OK)
+        return status;
+    b->ray_room = rays;
+    b->bytes += rays * (RAY_BYTES + ANSWER_BYTES);
+    return NOC_OK;
+}
+
+noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch) {
     vk_picture *b = &v->b;
     noc_status status = NOC_OK;
-    if ((uint64_t)slots_of(b) * (uint64_t)slots > v->device->rays.maxRayDispatchInvocationCount)
-        return noc_error(v->log, NOC_ERR_MEMORY, "vulkan: %d rays a pixel of %d x %d are more than the device takes",
-                         slots, b->width, b->height);
-    if (b->slots < slots) {
-        status = noc_vk_finish_flights(v);
-        noc_vk_free_buffer(v->device, &b->rays);
-        noc_vk_free_buffer(v->device, &b->answers);
-        b->bytes -= (size_t)b->slots * slots_of(b) * (RAY_BYTES + ANSWER_BYTES);
-        b->slots = 0;
-        if (status == NOC_OK)
-            status = make(v, (size_t)slots * RAY_BYTES, &b->rays);
-        if (status == NOC_OK)
-            status = make(v, (size_t)slots * ANSWER_BYTES, &b->answers);
-        if (status == NOC_OK)
-            b->slots = slots;
-    }
+    if (rays > v->device->rays.maxRayDispatchInvocationCount)
+        return noc_error(v->log, NOC_ERR_MEMORY,
+                         "vulkan: %zu rays of a frame of %d x %d are more than the device takes", rays, b->width,
+                         b->height);
+    if (b->ray_room < rays)
+        status = fit_rays(v, rays);
     if (status == NOC_OK && v->scratch.bytes < scratch) {
         status = noc_vk_finish_flights(v);
         noc_vk_free_buffer(v->device, &v->scratch);
@@ -200,6 +209,7 @@ static void destroy(vk_view *v) {
     noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
     noc_vk_free_buffer(d, &v->scratch);
+    noc_vk_free_learning(v);
     noc_vk_free_buffer(d, &v->given);
     array_free(&v->steps);
     noc_vk_free_buffer(d, &v->counters);

@@ -83,7 +83,10 @@ typedef struct vk_device {
     vk_pipeline pipelines[VK_SHADER_COUNT];
     vk_buffer table; /* shader binding table, of all ray tracing pipelines */
     double pipeline_seconds;
-    size_t bytes; /* allocated */
+    uint32_t
+        workers[2];    /* invocations of a work group: of a tile's list, of the choice of rays; set before pipelines */
+    size_t list_bytes; /* vk_facts */
+    size_t bytes;      /* allocated */
     noc_device_params params;
     pthread_mutex_t host_lock;
     void *host; /* the CPU backend's device; NULL: no question was asked yet */
@@ -136,7 +139,7 @@ typedef struct vk_array {
 /* What the tables of candidates on the device were made from. */
 typedef struct vk_sources_key {
     uint64_t commits;
-    const void *alias, *tree, *map;
+    const void *alias, *tree, *map, *clusters[NOC_HALVES];
 } vk_sources_key;
 
 typedef struct vk_world {
@@ -148,7 +151,7 @@ typedef struct vk_world {
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
     vk_array instances, instance_lights, backs;
     vk_array backdrop, environment, environment_slots, environment_sines;
-    vk_array alias, tree;
+    vk_array alias, tree, clusters;
     vk_sources_key drawn_from;
     noc_scene_versions seen; /* that the arrays know */
     bool filled;
@@ -180,14 +183,26 @@ typedef struct vk_flight {
 
 /* Buffers of one picture. */
 typedef struct vk_picture {
-    int width, height, sets, slots;
+    int width, height, sets;
+    size_t ray_room; /* rays that there is room for */
     uint32_t blocks_x, blocks_y;
     vk_buffer surfaces[2], reservoirs[NOC_RESERVOIR_SETS], visible[NOC_RESERVOIR_SETS];
     vk_buffer colour, picture, coverage;
-    vk_buffer rays, answers, hits; /* of `slots` rays a pixel */
+    vk_buffer rays, answers, hits; /* hits: one a pixel */
     vk_buffer instance;            /* that each pixel sees; none: the scene has had none */
     size_t bytes;
 } vk_picture;
+
+/* Learned visibility of lights: list_memory.h. The cache outlives the size of the picture. */
+typedef struct vk_learning {
+    vk_buffer cache, observed, bright;
+    uint32_t head[16];                           /* the cache's, while it is moved */
+    size_t tiles;                                /* of the picture that the cache has room for */
+    uint32_t cells, rows;                        /* of the cache; of observations */
+    uint32_t room;                               /* entries of a list */
+    bool told;                                   /* that observations had no room */
+    uint32_t time, epoch, next_time, next_epoch; /* of the cache; and when the frame at hand is complete */
+} vk_learning;
 
 /* Views (noc_aov): what shaders gather for them, and the host's copy of what the last complete frame left. Buffers and
  * arrays are there where a frame has needed them. */
@@ -229,6 +244,7 @@ typedef struct vk_view {
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
     vk_buffer samples, scratch, counters, given;
+    vk_learning learning;
     vk_steps steps; /* of the stage at work */
     vk_views views;
     vk_buffer past_lights;
@@ -321,13 +337,23 @@ noc_status noc_vk_view_create(void *world, void **view);
 void noc_vk_view_destroy(void *view);
 size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
-/* Room for so many rays a pixel, so much scratch, and for instances where the scene has some. */
-noc_status noc_vk_view_fit(vk_view *v, int slots, size_t scratch);
+/* Room for so many rays, so much scratch, and for instances where the scene has some. */
+noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch);
 /* Room for the lights of the frame before, where the plan reuses what it made, and whether it can be. */
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
 noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
 noc_status noc_vk_read_picture(void *view, noc_image *image);
+
+/* lists.c */
+/* Returns all hierarchies as shaders read them, NULL where memory is refused. */
+void *noc_vk_pack_clusters(const noc_clusters *const clusters[NOC_HALVES], size_t *bytes);
+/* Room for what a frame observes and learns. */
+noc_status noc_vk_view_fit_learning(vk_view *v, const frame_constants *constants);
+/* Before the first step of a frame that learns, and when it was submitted; one that is dropped is not learned from. */
+void noc_vk_begin_learning(vk_view *v, uint32_t epoch, VkCommandBuffer commands);
+void noc_vk_end_learning(vk_view *v);
+void noc_vk_free_learning(vk_view *v);
 
 /* frame.c */
 noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,

@@ -251,8 +251,20 @@ static noc_status fill_tree(vk_world *w, const noc_tree *tree) {
     return fill(w, &w->tree, tree->pairs, bytes, 0, bytes, 0, "the light tree");
 }
 
+static noc_status fill_clusters(vk_world *w, const noc_light_sources *sources) {
+    size_t bytes;
+    void *words = noc_vk_pack_clusters((const noc_clusters *const *)sources->clusters, &bytes);
+    if (!words)
+        return noc_no_memory(w->log, "vulkan");
+    noc_status status = fill(w, &w->clusters, words, bytes, 0, bytes, 0, "clusters of lights");
+    free(words);
+    return status;
+}
+
 noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map) {
-    const vk_sources_key key = { w->seen.commits, sources->alias, sources->tree, map };
+    const vk_sources_key key = {
+        w->seen.commits, sources->alias, sources->tree, map, { sources->clusters[0], sources->clusters[1] }
+    };
     noc_status status = NOC_OK;
     if (!memcmp(&key, &w->drawn_from, sizeof(key)))
         return NOC_OK;
@@ -260,6 +272,8 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
         status = fill_alias(w, &w->alias, sources->alias);
     if (status == NOC_OK && sources->tree)
         status = fill_tree(w, sources->tree);
+    if (status == NOC_OK && (sources->clusters[0] || sources->clusters[1]))
+        status = fill_clusters(w, sources);
     if (status == NOC_OK && map)
         status = fill_alias(w, &w->environment_slots, map->texels);
     if (status == NOC_OK && map) {
@@ -302,7 +316,8 @@ void noc_vk_world_destroy(void *world) {
                                  &w->environment_slots,
                                  &w->environment_sines,
                                  &w->alias,
-                                 &w->tree };
+                                 &w->tree,
+                                 &w->clusters };
     noc_light_set_destroy(w->lights_set);
     noc_vk_forget_host_world(w);
     pthread_mutex_lock(&d->lock);

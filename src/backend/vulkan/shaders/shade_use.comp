@@ -3,6 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
+#include "backend/vulkan/list_memory.h"
+#include "core/list_mix.h"
 #include "core/shading.h"
 #include "surfaces.glsl"
 #include "views.glsl"
@@ -17,6 +19,10 @@ void main() {
         on = HERE.answers.at[p.slot] != VK_ANSWER_WANTED;
     if (!on)
         return;
+    if ((HERE.list_flags & LIST_MIXES) != 0u) {
+        EXACT float w = q.w * list_reused(q.m, float(FRAME.draws));
+        q.w = w;
+    }
     surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
     vec3 light = sample_shade(s, q, light_load(q.light));
     note_sample(p, s, q, light_load(q.light), light);
