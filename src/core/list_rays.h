@@ -19,6 +19,17 @@ struct list_sums {
     real bright;
 };
 
+#ifndef CORE_GLSL
+typedef struct list_sums list_sums;
+#endif
+
+/* What a pixel shares out: its sums, draws, and how many rays these became. */
+struct list_shared {
+    list_sums sums;
+    real draws;
+    u32 rays;
+};
+
 /* A ray to one of the entries. */
 struct list_ray {
     u32 light;
@@ -52,7 +63,7 @@ struct list_found {
 };
 
 #ifndef CORE_GLSL
-typedef struct list_sums list_sums;
+typedef struct list_shared list_shared;
 typedef struct list_ray list_ray;
 typedef struct list_drawn list_drawn;
 typedef struct list_kept list_kept;
@@ -220,6 +231,20 @@ FN u32 list_share_out(CTX real all, u1 near, u32 face, u1 rows, real n, real sta
         drawn = drawn + K(1.0f);
     }
     return rays;
+}
+
+/* Shares out the rays of a pixel. far: sums of its face; wanted: rays that it asks for (list_asks). */
+FN list_shared list_share(CTX surf s, u32 key, mask on, list_sums far, u1 near, u32 face, u1 rows, real wanted,
+                          f1 brightness) {
+    list_shared q;
+    list_sums sums = list_weigh(PASS s, key, near);
+    EXACT real all = sums.all + far.all;
+    EXACT real bright = sums.bright + far.bright;
+    q.sums.all = sel(on, all, K(0.0f));
+    q.sums.bright = sel(on, bright, K(0.0f));
+    q.draws = list_draws(q.sums, wanted, brightness, rng(key, KU(DIM_LIST_RAYS)));
+    q.rays = list_share_out(PASS q.sums.all, near, face, rows, q.draws, rng(key, KU(DIM_LIST_START)));
+    return q;
 }
 
 /* The ray to an entry that was drawn, whose light is l. There is none to a place that brings nothing. */

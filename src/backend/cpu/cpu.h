@@ -281,6 +281,10 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile t);
 void noc_cpu_resample(stage_run *run, worker *w, tile t);
 void noc_cpu_shade_shared(stage_run *run, worker *w, tile t);
+/* learning.c */
+/* What the rays of a tile have found goes into its cells, and is kept to be learned. */
+void noc_cpu_note_observations(stage_run *run, worker *w, tile t);
+float noc_cpu_sum_in_halves(float *x, int n); /* of n numbers, a power of two; overwrites them */
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame);
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame);

@@ -137,19 +137,14 @@ void see(surf s, float depth) {
 
 /* Returns what the pixel expects to get. */
 float share_pixel(place p, surf s, face_sums far, uint near, uint rows) {
-    uint key = key_at(p, FRAME.index);
-    list_sums sums = list_weigh(s, key, near);
-    EXACT float all = sums.all + far.all;
-    EXACT float bright = sums.bright + far.bright;
-    sums.all = all;
-    sums.bright = bright;
     bool fresh = (HERE.list_flags & LIST_FRESH) != 0u && pixel_load(PIXEL_FRESH) != 0u;
     float expected = (HERE.list_flags & LIST_LEARNS) != 0u ? uintBitsToFloat(HERE.learned.at[CACHE_BRIGHT]) : 0.0;
-    float n = list_draws(sums, list_asks(float(FRAME.shadow_rays), fresh), expected, rng(key, DIM_LIST_RAYS));
-    pixel_store(PIXEL_ALL, sums.all);
-    pixel_store(PIXEL_DRAWS, n);
-    pixel_store(PIXEL_COUNT, list_share_out(sums.all, near, 0u, rows, n, rng(key, DIM_LIST_START)));
-    return bright;
+    list_shared q = list_share(s, key_at(p, FRAME.index), true, list_sums(far.all, far.bright), near, 0u, rows,
+                               list_asks(float(FRAME.shadow_rays), fresh), expected);
+    pixel_store(PIXEL_ALL, q.sums.all);
+    pixel_store(PIXEL_DRAWS, q.draws);
+    pixel_store(PIXEL_COUNT, q.rays);
+    return q.sums.bright;
 }
 
 /* The sum of 16 in halves. */
