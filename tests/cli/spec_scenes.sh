@@ -1,6 +1,6 @@
 #!/bin/sh
-# Scenes of specs: those left out where data is absent, what the report says they hold, cars that drive, the light
-# view.
+# Scenes of specs: those left out where data is absent, what the report says they hold, cars that drive, the light view;
+# and the specs of Hlavova's chapter 6, made small.
 . "$(dirname "$0")/lib.sh"
 export XDG_CACHE_HOME="$work/home"
 
@@ -138,4 +138,41 @@ rm light/pictures/*-light1.png
 run experiment light.json -o light
 test $status = 0 && grep -q ': 2 rows, 0 of them made now' out && python3 sheet.py
 result $? "views that were removed are made again, without new rows"
+
+# ---- Hlavova's chapter 6 ----
+# Each spec, at 32 x 18 px in a small built-in city, makes its table and its pictures.
+: >file
+for file in "$source_dir"/experiments/hlavova-*.json; do
+    name=$(basename "$file" .json)
+    python3 - "$file" $name.json <<'SMALL'
+import json, sys
+spec = json.load(open(sys.argv[1]))
+spec["scenes"] = [dict(s, **{"city-size": 200}) for s in spec["scenes"] if s["inputs"] == ["builtin:city"]]
+assert spec["scenes"] and all(s.get("optional") for s in json.load(open(sys.argv[1]))["scenes"]
+                              if s["inputs"] != ["builtin:city"])
+spec.update({"size": "32x18", "repetitions": 1, "reference": {"rays": 1, "frames": 1}})
+if "crop" in spec:
+    spec["crop"] = [0, 0, 32, 18]
+json.dump(spec, open(sys.argv[2], "w"))
+SMALL
+    run experiment $name.json -o $name
+    test $status = 0 && test ! -s err && python3 - $name <<'CHECK'
+import csv, json, os, sys
+name = sys.argv[1]
+spec = json.load(open(name + ".json"))
+rows = list(csv.DictReader(open(name + "/results.csv")))
+configs = sum(max([1] + [len(v) for v in c.values() if isinstance(v, list)]) for c in spec["configurations"])
+cameras = sum(len(s.get("cameras", spec.get("cameras"))) for s in spec["scenes"])
+assert len({(r["scene"], r["camera"], r["configuration"]) for r in rows}) == cameras * configs, (cameras, configs)
+sheets = [f for f in os.listdir(name) if f.endswith(".png")]
+moving = any("path" in c for s in spec["scenes"] for c in s.get("cameras", []))
+shown = 1 if moving else len(spec.get("shown", [1]))
+assert len(sheets) == cameras * shown * (1 + bool(spec.get("light-view"))), sheets
+CHECK
+    result $? "$name makes its rows and pictures" "$(cat err)"
+    run experiment "$file" -o file/w
+    grep -v 'is left out: .*: No such file or directory$' err >said
+    test $status = 1 && test "$(cat said)" = "nocturne: file/w: this folder cannot be used: Not a directory"
+    result $? "$name is right as it is, and none of its options is without effect" "$(cat said)"
+done
 finish
