@@ -8,12 +8,13 @@ NINJA = ninja $$([ -t 1 ] || echo --quiet)
 WERROR = false
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build check asan tsan fuzz coverage arm64 format install clean deps deps-check
+.PHONY: help demo build built check gpu-report asan tsan fuzz coverage arm64 format install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
 	@echo "make build    build build/nocturne"
 	@echo "make check    build, and run all tests"
+	@echo "make gpu-report  tests and times of the Vulkan backend on this machine's GPU: docs/gpu/"
 	@echo "make asan     the tests again under AddressSanitizer and UBSan"
 	@echo "make tsan     those of them that run threads, under ThreadSanitizer"
 	@echo "make fuzz     fuzzers of all that reads bytes, TIME=60 seconds each, with a table (CORPUS=\"pbf csv\" for some of them)"
@@ -47,11 +48,17 @@ demo: build
 	@echo "  build/nocturne help render"
 
 # Tests need packages that the program does not: a build folder made without them must look again.
-check: deps-check build/build.ninja
+built: deps-check build/build.ninja
 	@[ -e build/.tests-$(WERROR) ] || { rm -f build/.tests-* && \
 		meson setup --reconfigure build -Dtests=enabled -Dwerror=$(WERROR) >build/setup.log && touch build/.tests-$(WERROR); }
 	@$(NINJA) -C build
+
+check: built
 	@tools/run-tests.sh build
+
+# Under nine minutes; DEVICE=NAME chooses one of several.
+gpu-report: built
+	@tools/gpu-report.sh
 
 # -O1 and line numbers alone: most of its time goes into compiling. TURN=N: after `make check`, its quick tests and a
 # share of the others, and of the programs those alone.

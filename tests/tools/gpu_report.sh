@@ -1,0 +1,130 @@
+#!/bin/sh
+# tools/gpu-report.sh and tools/gpu-report.py, with a program that only pretends: steps, limits, and what the page says.
+set -u
+source_dir=${NOC_SOURCE:?names the source folder}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+count=0 failed=0
+result() {
+    count=$((count + 1))
+    if [ "$1" = 0 ]; then
+        echo "ok $count - $2"
+    else
+        failed=1
+        echo "not ok $count - $2"
+        sed 's/^/# /' why 2>/dev/null
+    fi
+}
+
+# A pack whose program writes what nocturne would, and whose tests pass, fail, hang and die.
+pack=$work/pack
+mkdir -p "$pack/build/tests" "$pack/specs" "$pack/lib"
+cp "$source_dir/tools/gpu-report.sh" "$source_dir/tools/gpu-report.py" "$source_dir/tools/count-tests.py" "$pack/"
+echo 1234567 >"$pack/commit"
+cat >"$pack/build/nocturne" <<'PROGRAM'
+#!/bin/sh
+echo "$*" >>"$ASKED"
+case "$*" in
+--version) printf 'nocturne 0.1.0\ndevices:\n  embree 0 processor, P\n%s\n' "$DEVICES" ;;
+*lights*) echo 'nocturne: vulkan: the device is lost' >&2; exit 1 ;;
+bench*) while [ "$1" != -o ]; do shift; done; cp "$BENCH" "$2" ;;
+experiment*) while [ "$1" != -o ]; do shift; done; mkdir -p "$2"; cp "$ROWS" "$2/results.csv" ;;
+esac
+PROGRAM
+cat >"$pack/build/tests/mixed" <<'TEST'
+#!/bin/sh
+printf 'ok 1 - a\nnot ok 2 - b\nok 3 - c # SKIP no layer\n1..3\n'
+exit 1
+TEST
+printf '#!/bin/sh\necho 1..2; echo "ok 1 - a"; kill -SEGV $$\n' >"$pack/build/tests/dies"
+printf '#!/bin/sh\nexec sleep 60\n' >"$pack/build/tests/hangs"
+chmod +x "$pack/build/nocturne" "$pack"/build/tests/*
+for t in mixed dies hangs; do echo "$t @PACK@/build/tests/$t"; done >"$pack/tests.txt"
+for s in frame-times cars; do
+    echo '{ "size": "1x1", "crop": [0, 0, 1, 1], "light-view": true, "repetitions": 4 }' >"$pack/specs/$s.json"
+done
+cat >bench.json <<'BENCH'
+{ "processor": "P", "cores": 2, "method": "restir-uniform", "scene": { "triangles": 1000, "lights": 20 },
+  "left_out": [],
+  "tables": { "floor": [ { "name": "restir-uniform", "view": "street", "wall_s": 0.012, "floor_wall_s": 0.004,
+    "cpu_s": 0.02, "floor_cpu_s": 0.01, "rays_primary": 1000000, "rays_shadow": 3000000, "frames": 9,
+    "passes": [ { "pass": "primary", "thread_s": 0.0015 }, { "pass": "spatial", "thread_s": 0.0025 } ] } ] } }
+BENCH
+python3 - <<'ROWS'
+import csv
+columns = "scene configuration frame wall_s cpu_s wall_total_s cpu_total_s".split()
+out = csv.writer(open("rows.csv", "w"))
+out.writerow(columns)
+for kind, ms in (("lamps", 4), ("lamps and windows", 6), ("all windows lit", 10)):
+    for frame, extra in ((1, 90), (2, 0), (3, 0)): # the first frame does not count
+        out.writerow(["built-in, " + kind, "SRIS #40", frame, (ms + extra) / 1e3, 1, 0, 0])
+for kind, ms in (("no cars", 5), ("cars at rest", 6), ("cars driving", 9)):
+    out.writerow(["built-in, " + kind, "ReSTIR", 20, 0, 0, 20 * ms / 1e3, 1])
+ROWS
+export TEST_LIMIT=3 ASKED="$work/asked" BENCH="$work/bench.json" ROWS="$work/rows.csv"
+
+# report DEVICES BUDGET: a run, and its page
+report() {
+    rm -rf out asked
+    DEVICES=$1 BUDGET=$2 VK_DRIVER_FILES=none sh "$pack/gpu-report.sh" run "$work/out" >why 2>&1
+    page=$(ls out/*.md)
+}
+# says TEXT...: each is a line of the page, or a part of one
+says() {
+    for text in "$@"; do
+        grep -qF -- "$text" "$page" || { echo "not said: $text" >>why; return 1; }
+    done
+}
+
+report '  vulkan 0 discrete, NVIDIA GeForce RTX 3060, NVIDIA 550.54
+  vulkan 1 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
+test "$page" = out/nvidia-geforce-rtx-3060.md && says '# NVIDIA GeForce RTX 3060' 'NVIDIA 550.54, discrete' \
+    'Commit: 1234567' 'Pictures: 1920x1080 px'
+result $? "a page is called after the card, and names its driver"
+! grep -q 'no ray-tracing cores\|software on a processor' "$page"
+result $? "nothing is held against a card with such cores"
+says '| mixed | 1 | 1 | 1 |' '- failed: mixed b' '- skipped: mixed c (no layer)' '| dies | 1 | 0 | 0 |' \
+    'ended before its end, status 139' '| hangs | 0 | 0 | 0 |' 'stopped at its limit'
+result $? "tests that fail, are skipped, die and hang are told apart"
+says '| restir-uniform, street | 12 | 3 | 1000 | 9 |' '| primary | 1.5 |' '| spatial | 2.5 |' 'Timestamps of the device'
+result $? "a frame over its floor by the clock, and its passes"
+says '| SRIS #40 | 4 (1.5, 2.5) | 7.69 (6.2) |'; result $? "windows over lamps, beside the thesis"
+says '| ReSTIR | 5 | 1.2 | 1.5 |'; result $? "cars that drive over cars at rest"
+says 'Not measured: vulkan: the device is lost.'; result $? "a step that failed says why, and the others are there"
+grep -q -- '^bench --backend vulkan --device 0 .*--size 1920x1080' asked; result $? "the GPU is taken before software"
+python3 - <<'CHECK' 2>why
+import json
+for name in "frame-times", "cars":
+    spec = json.load(open("pack/specs/%s-sized.json" % name))
+    assert spec["size"] == "1920x1080" and "crop" not in spec and "light-view" not in spec and spec["repetitions"] == 1
+CHECK
+result $? "specs are those of the report's size, once"
+test "$(ls out | wc -l)" -le 8 && grep -q '^==> steps.txt' out/log.txt; result $? "few files, and a log"
+
+: >"$pack/tests.txt" # the others are of devices
+report '  vulkan 0 discrete, NVIDIA H100 80GB HBM3, NVIDIA 580.159' 60
+says 'This chip has no ray-tracing cores' 'say nothing of a card that has such cores, as the thesis'
+result $? "an H100's figures say nothing of an RTX 3060, and the page does"
+report '  vulkan 0 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
+says 'This is software on a processor, no GPU' '| restir-uniform, street | 20 | 2 |' 'Thread time' 'Pictures: 96x54 px'
+result $? "software says so, is timed by the processor, and draws small pictures"
+report '  vulkan 0 discrete, X: not usable: no ray tracing
+  vulkan 1 integrated, Y, Z 1' 60
+says '# Y'; result $? "what is not usable is passed by"
+report '  vulkan 0 discrete, Y, Z 1' 0
+says 'None were run' 'Not measured: no time was left' || says 'no time was left'
+result $? "steps that do not fit into the time are left out, and said"
+for name in 'NVIDIA RTX A6000' 'NVIDIA A40' 'NVIDIA L4' 'Tesla T4' 'AMD Radeon RX 7900 XTX'; do
+    report "  vulkan 0 discrete, $name, D 1" 60
+    ! grep -q 'no ray-tracing cores' "$page" || echo "$name" >>wrong
+done
+for name in 'NVIDIA A100-SXM4-40GB' 'NVIDIA H200' 'Tesla V100-SXM2-16GB' 'NVIDIA GeForce GTX 1080 Ti' \
+    'AMD Instinct MI300X'; do
+    report "  vulkan 0 discrete, $name, D 1" 60
+    grep -q 'no ray-tracing cores' "$page" || echo "$name" >>wrong
+done
+cp wrong why 2>/dev/null
+test ! -e wrong; result $? "cards with and without ray-tracing cores, by name"
+echo "1..$count"
+exit $failed
