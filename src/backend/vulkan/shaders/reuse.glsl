@@ -80,7 +80,7 @@ void gather(place p) {
     neighbour_eye_ = eye_now();
     neighbour_surfaces_ = HERE.surfaces;
     for (int i = 0; i < neighbours_; i++) {
-        v3 offset = neighbour_offset(key, HERE.dimension + 3u * uint(i));
+        v3 offset = neighbour_offset(key, HERE.dimension + DIM_NEIGHBOUR(i));
         offer_neighbour(i, here, HERE.surfaces, neighbour_place(p.x, p.y, offset));
     }
 }
