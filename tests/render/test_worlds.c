@@ -65,7 +65,7 @@ static bool equal(const noc_image *a, const noc_image *b) {
 
 /* All of them at once on a device of so many threads, each against itself alone. */
 static void at_once(const noc_scene *s, int threads) {
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = threads }, NULL);
+    noc_device *device = own_device(threads, NULL);
     noc_view *first = noc_view_create(device, s);
     looker all[VIEWS] = { 0 };
     pthread_t thread[VIEWS];
@@ -101,7 +101,7 @@ static void views_are_independent(void **state) {
 /* A device holds worlds of several scenes, and lets go of each with its last view. */
 static void worlds_go_with_their_last_view(void **state) {
     (void)state;
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = 2 }, NULL);
+    noc_device *device = own_device(2, NULL);
     for (int round = 0; round < 3; round++) {
         noc_scene *s[2] = { street(), street() };
         noc_view *v[4];
@@ -243,7 +243,7 @@ static void rays_are_replayed_before_a_commit(void **state) {
     (void)state;
     noc_scene *s = street();
     noc_backend backend = noc_backend_embree;
-    noc_device *device = noc_device_create(&(noc_device_params){ .threads = 2 }, NULL);
+    noc_device *device = own_device(2, NULL);
     backend.replay = replay_beside_a_commit;
     device->backend = &backend;
     noc_view *v = noc_view_create(device, s);
