@@ -189,6 +189,9 @@ static void all_kinds_have_the_same_bits(void **state) {
     expect_same_bits(&t, &camera, &p, 3, "textures, instances, profiles");
     p.gloss = false;
     expect_same_bits(&t, &camera, &p, 2, "without gloss");
+    p = all_kinds_params(NOC_METHOD_RIS, false);
+    p.candidates = NOC_CANDIDATES_LISTS;
+    expect_same_bits(&t, &camera, &p, 3, "lists");
     noc_image *map = bright_map();
     assert_int_equal(noc_scene_set_environment(scene, map), NOC_OK);
     noc_image_destroy(map);
@@ -206,9 +209,11 @@ static void edits_have_the_same_bits(void **state) {
     static const struct {
         const char *name;
         noc_bias bias;
-    } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE },
-                 { "edits, mis", NOC_BIAS_MIS },
-                 { "edits, counted", NOC_BIAS_COUNTED } };
+        noc_candidates candidates;
+    } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_UNIFORM },
+                 { "edits, mis", NOC_BIAS_MIS, NOC_CANDIDATES_UNIFORM },
+                 { "edits, counted", NOC_BIAS_COUNTED, NOC_CANDIDATES_UNIFORM },
+                 { "edits, lists", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_LISTS } };
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     (void)state;
     if (!has_vulkan(messages))
@@ -220,6 +225,7 @@ static void edits_have_the_same_bits(void **state) {
         open_twins(scene, true, messages, &t);
         noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
         p.bias = rows[row].bias;
+        p.candidates = rows[row].candidates;
         for (int f = 0; f < 9; f++) {
             noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * f, 0, 1.5, 0, -4 + 0.1 * f, 0, 0, 1.5, 0 } };
             noc_light l = crowd_light(70 + f, -3);
@@ -305,6 +311,8 @@ static void views_have_the_same_bits(void **state) {
         { "restir", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, false, 0 },
         { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER, false, 0 },
         { "ris, light-bvh, map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, true, 0 },
+        { "ris, lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, 0 },
+        { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false, 0 },
         { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, OF_RESERVOIRS },
         { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, ~(uint32_t)OF_SURFACES },
     };
@@ -325,7 +333,7 @@ static void views_have_the_same_bits(void **state) {
         noc_render_params p = all_kinds_params(rows[row].method, rows[row].map);
         p.candidates = rows[row].candidates;
         p.rays = 20;
-        p.aovs = ALL_VIEWS & ~rows[row].without;
+        p.aovs = (ALL_VIEWS & ~rows[row].without) | (p.candidates == NOC_CANDIDATES_LISTS ? AOV(LIGHTS) : 0);
         for (int f = 0; f < 4; f++) {
             noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * (f / 2), 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
             if (f == 2)

@@ -133,6 +133,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .block_bright = l->bright.address,
         .counters = v->counters.address,
         .view_rays = v->views.gathered[NOC_AOV_RAYS].address,
+        .view_lights = v->views.gathered[NOC_AOV_LIGHTS].address,
         .view_density = v->views.gathered[NOC_AOV_DENSITY].address,
         .view_lux = v->views.gathered[NOC_AOV_ILLUMINANCE].address,
         .view_group = v->views.gathered[NOC_AOV_GROUP].address,
@@ -160,6 +161,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .tiles_x = noc_vk_tiles(b->blocks_x),
         .tile_words = facts_of(v, frame).tile_words,
         .list_flags = (frame->plan->learns ? LIST_LEARNS : 0) | (frame->plan->mixes ? LIST_MIXES : 0) |
+                      (frame->plan->shares_rays ? LIST_SHARES : 0) |
                       (noc_stage_has(&frame->plan->stages[0], NOC_PASS_SEEN_BEFORE) ? LIST_FRESH : 0),
         .list_room = l->room,
         .observed_rows = l->rows,
@@ -317,15 +319,10 @@ static noc_status record(vk_view *v, const noc_frame *frame, vk_steps *steps) {
 /* ---- a frame ---- */
 
 static noc_status refuse(const vk_view *v, const noc_frame *frame) {
-    static const uint32_t of_lists = NOC_AOV_BIT(LIGHTS) | NOC_AOV_BIT(DENSITY) | NOC_AOV_BIT(GROUP) |
-                                     NOC_AOV_BIT(PLACED) | NOC_AOV_BIT(ILLUMINANCE) | NOC_AOV_BITS_EMITTERS;
-    uint32_t missing = frame->plan->shares_rays || frame->plan->candidates == NOC_CANDIDATES_LISTS
-                           ? frame->params->aovs & of_lists
-                           : frame->params->aovs & NOC_AOV_BIT(LIGHTS);
-    if (frame->plan->draws && missing)
+    if (frame->plan->draws && frame->plan->candidates != NOC_CANDIDATES_LISTS &&
+        frame->params->aovs & NOC_AOV_BIT(LIGHTS))
         return noc_error(v->log, NOC_ERR_UNSUPPORTED,
-                         "vulkan: no view \"%s\" of candidates lists and influence on this backend yet",
-                         noc_aov_name((noc_aov)__builtin_ctz(missing)));
+                         "vulkan: no view \"lights\" of candidates influence on this backend yet");
     if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_INFLUENCE)
         return noc_error(
             v->log, NOC_ERR_UNSUPPORTED,

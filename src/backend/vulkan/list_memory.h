@@ -58,5 +58,6 @@
 #define LIST_LEARNS 1u /* the visibility cache steers rays, and learns from them */
 #define LIST_FRESH 2u  /* PIXEL_FRESH is made */
 #define LIST_MIXES 4u  /* a pixel's light is shared between its reservoir and its rays */
+#define LIST_SHARES 8u /* pixels share several rays out over lists */
 
 #endif

@@ -68,6 +68,7 @@ struct vk_instance_record {
     ADDRESS(Floats, block_bright)                                                                                      \
     ADDRESS(Words, counters)                                                                                           \
     ADDRESS(Words, view_rays) /* a count; the others as noc_views.made has what views gather */                        \
+    ADDRESS(Floats, view_lights)                                                                                       \
     ADDRESS(Floats, view_density)                                                                                      \
     ADDRESS(Floats, view_lux)                                                                                          \
     ADDRESS(Floats, view_group)                                                                                        \
@@ -113,6 +114,7 @@ struct vk_instance_record {
 #define VK_VIEW_PLACED 16u
 #define VK_VIEW_EMITTERS 32u
 #define VK_VIEW_TRIANGLES 64u
+#define VK_VIEW_LIGHTS 128u
 #define VK_NO_TRIANGLE 0xffffffffu
 
 #define VK_ANSWER_NONE 0u   /* of a ray: there is none */

@@ -22,9 +22,10 @@ static uint32_t set_bit(int set) { return R(SET) << set; }
 static bool gathers(vk_shader shader) {
     static const bool yes[VK_SHADER_COUNT] = {
 #define YES(name) [VK_SHADER_##name] = true
-        YES(primary_use),   YES(place),       YES(candidates_shared), YES(candidates_tree), YES(resolve_ask),
-        YES(temporal_ask),  YES(spatial_ask), YES(emitters),          YES(shade_use),       YES(reference_ask),
-        YES(reference_use), YES(sky_ask),     YES(sky_use),
+        YES(primary_use), YES(place),         YES(candidates_shared), YES(candidates_tree),
+        YES(resolve_ask), YES(temporal_ask),  YES(spatial_ask),       YES(emitters),
+        YES(shade_use),   YES(reference_ask), YES(reference_use),     YES(sky_ask),
+        YES(sky_use),     YES(list_ask),      YES(list_note),         YES(list_sources),
 #undef YES
     };
     return yes[shader];
@@ -231,7 +232,10 @@ static void build_list(scheduling *s) {
 }
 
 static void candidates_list(scheduling *s) {
-    add_list(s, VK_SHADER_list_candidates, VK_DOMAIN_PIXELS, R(SURFACES), set_bit(s->stage->target));
+    uint32_t target = set_bit(s->stage->target);
+    add_list(s, VK_SHADER_list_candidates, VK_DOMAIN_PIXELS, R(SURFACES), target);
+    if (s->facts->views)
+        add_list(s, VK_SHADER_list_note, VK_DOMAIN_PIXELS, R(SURFACES) | target, 0);
 }
 
 static void seen_before(scheduling *s) {
@@ -247,6 +251,8 @@ static void share_rays(scheduling *s) {
              R(SCRATCH) | (learns ? R(BRIGHT) : 0));
     add_list(s, VK_SHADER_list_ask, VK_DOMAIN_LAYERS, R(SURFACES), R(SCRATCH) | R(RAYS) | R(ANSWERS))->slots =
         list_slots(s->plan, s->facts);
+    if (s->facts->views)
+        add_list(s, VK_SHADER_list_note, VK_DOMAIN_PIXELS, R(SURFACES), 0);
 }
 
 static void trace_shared(scheduling *s) {
@@ -263,6 +269,8 @@ static void resample(scheduling *s) {
 }
 
 static void shade_shared(scheduling *s) {
+    if (s->facts->views)
+        add_list(s, VK_SHADER_list_sources, VK_DOMAIN_PIXELS, R(SURFACES) | set_bit(s->stage->target), 0);
     add_list(s, VK_SHADER_list_shade, VK_DOMAIN_PIXELS, set_bit(s->stage->target) | R(COLOUR), R(COLOUR));
 }
 

@@ -36,6 +36,8 @@
     COMPUTE(list_share)                                                                                                \
     COMPUTE(list_ask)                                                                                                  \
     COMPUTE(list_use)                                                                                                  \
+    COMPUTE(list_note)                                                                                                 \
+    COMPUTE(list_sources)                                                                                              \
     COMPUTE(list_resample)                                                                                             \
     COMPUTE(list_shade)                                                                                                \
     COMPUTE(learn_bright)                                                                                              \
