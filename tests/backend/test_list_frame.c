@@ -220,6 +220,31 @@ static void methods_have_the_same_bits(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* What was learned outlives the picture's size: a cache of more cells is filled from the one before. Cells are as wide
+ * as so many pixels. */
+static void larger_pictures_keep_what_was_learned(void **state) {
+    noc_scene *scene = has_vulkan(messages) ? builtin("mess", 0, 300) : NULL;
+    noc_camera camera;
+    twins t;
+    (void)state;
+    if (!scene)
+        skip();
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &camera), NOC_OK);
+    open_with(scene, (sizes){ 0 }, &t);
+    for (int size = 48; size <= 272; size += 224) { /* 9 tiles, and more than 256, of pixels as wide */
+        camera.fov_deg = 2 * atan(size * 0.0018) * 180 / M_PI;
+        noc_render_params p = over_lists(NOC_METHOD_RIS, 16, 16);
+        p.width = p.height = size;
+        p.shadow_rays = 1;
+        uint32_t cells = gpu_of(&t)->learning.cells;
+        expect_same_frame(&t, &camera, &p, "before it learns");
+        expect_same_frame(&t, &camera, &p, "after it learned");
+        assert_true(gpu_of(&t)->learning.cells > cells);
+    }
+    close_twins(&t);
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_level),
@@ -229,6 +254,7 @@ int main(void) {
         cmocka_unit_test(copies),
         cmocka_unit_test(any_size_of_group),
         cmocka_unit_test(methods_have_the_same_bits),
+        cmocka_unit_test(larger_pictures_keep_what_was_learned),
     };
     messages = noc_log_create(NULL);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
