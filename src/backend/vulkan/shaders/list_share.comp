@@ -171,7 +171,6 @@ void main() {
         pixel_store(PIXEL_DRAWS, 0.0);
         pixel_store(PIXEL_COUNT, 0u);
         pixel_store(PIXEL_SEES, receives(r) ? 1u : 0u);
-        cell_of_block_ = tile_load(TILE_CELL + number_in_tile(p));
     }
     surf s = surf_at(HERE.surfaces, inside ? p.block : 0u, p.lane, eye_now());
     see(s, r.depth);
@@ -179,6 +178,8 @@ void main() {
     settle();
     next_cell_ = 0u;
     uint rest = sum_of_block(r.material != NO_SURFACE && count > 0u ? 1u << my_lane : 0u);
+    /* A block that sees no surface has no cell, and weighs along with the others all the same. */
+    cell_of_block_ = rest != 0u ? tile_load(TILE_CELL + number_in_tile(p)) : 0u;
     bright_[my_block][my_lane] = 0.0;
     for (;;) {
         settle();
