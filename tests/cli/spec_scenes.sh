@@ -102,28 +102,10 @@ run experiment light.json -o light
 grep -q '^!\[Lights of frame 1\](1-one-own-light1.png)$' light/report.md &&
     grep -q "^Lights are those that the pixels' reservoirs hold, each in its own colour; grey: none.$" light/report.md
 result $? "the light view of shown frames is in the report"
+export PYTHONPATH="$source_dir/tests/cli" PYTHONDONTWRITEBYTECODE=1
 cat >sheet.py <<'CHECK'
-import glob, struct, zlib
-def read(path):
-    data, at, body = open(path, "rb").read(), 8, b""
-    while at < len(data):
-        n, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            w, h = struct.unpack(">II", data[at + 8:at + 16])
-        elif kind == b"IDAT":
-            body += data[at + 8:at + 8 + n]
-        at += n + 12
-    raw, rows, last = zlib.decompress(body), [], bytearray(3 * w)
-    for y in range(h):
-        f, line = raw[y * (3 * w + 1)], bytearray(raw[y * (3 * w + 1) + 1:(y + 1) * (3 * w + 1)])
-        for i in range(3 * w):
-            a, b, c = (line[i - 3] if i > 2 else 0), last[i], (last[i - 3] if i > 2 else 0)
-            p = a + b - c
-            paeth = min((a, b, c), key=lambda v: abs(p - v))
-            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[f]) & 255
-        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(w)])
-        last = line
-    return rows
+import glob
+from png_rows import read
 sheet = read("light/1-one-own-light1.png")
 pictures = [read(path) for path in glob.glob("light/pictures/*-light1.png")]
 assert len(pictures) == 2

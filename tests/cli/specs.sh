@@ -252,30 +252,9 @@ sed -i 's/"shown": \[\]/"shown": [1]/; s/32x18/320x180/
     s/KNOT/{ "name": "<knot>", "box": [140, 60, 40, 30] }/' insets.json
 run experiment insets.json -o insets --cache cache
 grep -q 'red is top, 40 x 30 px at (0, 0); green is &lt;knot&gt;, 40 x 30 px at (140, 60). All have' insets/report.md &&
-    python3 - <<'CHECK'
-import struct, sys, zlib
-def read(path):
-    data = open(path, "rb").read()
-    at, w, h, body = 8, 0, 0, b""
-    while at < len(data):
-        n, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            w, h, depth, colours = struct.unpack(">IIBB", data[at + 8:at + 18])
-            assert (depth, colours) == (8, 2)
-        elif kind == b"IDAT":
-            body += data[at + 8:at + 8 + n]
-        at += 12 + n
-    raw, rows, last = zlib.decompress(body), [], bytearray(3 * w)
-    for y in range(h):
-        f, line = raw[y * (3 * w + 1)], bytearray(raw[y * (3 * w + 1) + 1:(y + 1) * (3 * w + 1)])
-        for i in range(3 * w):
-            a, b, c = line[i - 3] if i > 2 else 0, last[i], last[i - 3] if i > 2 else 0
-            p = a + b - c
-            paeth = min((a, b, c), key=lambda v: abs(p - v))
-            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[f]) & 255
-        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(w)])
-        last = line
-    return rows
+    PYTHONPATH="$source_dir/tests/cli" PYTHONDONTWRITEBYTECODE=1 python3 - <<'CHECK'
+import sys
+from png_rows import read
 sheet = read("insets/1-one-own-frame1.png")
 inset = 158 * 30 // 40 + 1 # two of 158 px, 4 apart
 assert len(sheet[0]) == 2 * 320 + 4 and len(sheet) == 22 + 180 + 4 + inset + 14, (len(sheet[0]), len(sheet))

@@ -1,21 +1,6 @@
 #!/bin/sh
 # tools/gpu-report.sh and tools/gpu-report.py, with a program that only pretends: steps, limits, and what the page says.
-set -u
-source_dir=${NOC_SOURCE:?names the source folder}
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-count=0 failed=0
-result() {
-    count=$((count + 1))
-    if [ "$1" = 0 ]; then
-        echo "ok $count - $2"
-    else
-        failed=1
-        echo "not ok $count - $2"
-        sed 's/^/# /' why 2>/dev/null
-    fi
-}
+. "$(dirname "$0")/../cli/lib.sh"
 
 # A pack whose program writes what nocturne would, and whose tests pass, fail, hang and die.
 pack=$work/pack
@@ -66,20 +51,20 @@ export TEST_LIMIT=3 ASKED="$work/asked" BENCH="$work/bench.json" ROWS="$work/row
 
 # report DEVICES BUDGET: a run, and its page
 report() {
-    rm -rf out asked
-    DEVICES=$1 BUDGET=$2 VK_DRIVER_FILES=none sh "$pack/gpu-report.sh" run "$work/out" >why 2>&1
-    page=$(ls out/*.md)
+    rm -rf made asked
+    DEVICES=$1 BUDGET=$2 VK_DRIVER_FILES=none sh "$pack/gpu-report.sh" run "$work/made" >err 2>&1
+    page=$(ls made/*.md)
 }
 # says TEXT...: each is a line of the page, or a part of one
 says() {
     for text in "$@"; do
-        grep -qF -- "$text" "$page" || { echo "not said: $text" >>why; return 1; }
+        grep -qF -- "$text" "$page" || { echo "not said: $text" >>err; return 1; }
     done
 }
 
 report '  vulkan 0 discrete, NVIDIA GeForce RTX 3060, NVIDIA 550.54
   vulkan 1 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
-test "$page" = out/nvidia-geforce-rtx-3060.md && says '# NVIDIA GeForce RTX 3060' 'NVIDIA 550.54, discrete' \
+test "$page" = made/nvidia-geforce-rtx-3060.md && says '# NVIDIA GeForce RTX 3060' 'NVIDIA 550.54, discrete' \
     'Commit: 1234567' 'Pictures: 1920x1080 px'
 result $? "a page is called after the card, and names its driver"
 ! grep -q 'no ray-tracing cores\|software on a processor' "$page"
@@ -93,14 +78,14 @@ says '| SRIS #40 | 4 (1.5, 2.5) | 7.69 (6.2) |'; result $? "windows over lamps, 
 says '| ReSTIR | 5 | 1.2 | 1.5 |'; result $? "cars that drive over cars at rest"
 says 'Not measured: vulkan: the device is lost.'; result $? "a step that failed says why, and the others are there"
 grep -q -- '^bench --backend vulkan --device 0 .*--size 1920x1080' asked; result $? "the GPU is taken before software"
-python3 - <<'CHECK' 2>why
+python3 - <<'CHECK' 2>err
 import json
 for name in "frame-times", "cars":
     spec = json.load(open("pack/specs/%s-sized.json" % name))
     assert spec["size"] == "1920x1080" and "crop" not in spec and "light-view" not in spec and spec["repetitions"] == 1
 CHECK
 result $? "specs are those of the report's size, once"
-test "$(ls out | wc -l)" -le 8 && grep -q '^==> steps.txt' out/log.txt; result $? "few files, and a log"
+test "$(ls made | wc -l)" -le 8 && grep -q '^==> steps.txt' made/log.txt; result $? "few files, and a log"
 
 : >"$pack/tests.txt" # the others are of devices
 report '  vulkan 0 discrete, NVIDIA H100 80GB HBM3, NVIDIA 580.159' 60
@@ -124,7 +109,5 @@ for name in 'NVIDIA A100-SXM4-40GB' 'NVIDIA H200' 'Tesla V100-SXM2-16GB' 'NVIDIA
     report "  vulkan 0 discrete, $name, D 1" 60
     grep -q 'no ray-tracing cores' "$page" || echo "$name" >>wrong
 done
-cp wrong why 2>/dev/null
-test ! -e wrong; result $? "cards with and without ray-tracing cores, by name"
-echo "1..$count"
-exit $failed
+test ! -e wrong; result $? "cards with and without ray-tracing cores, by name" "$(cat wrong 2>/dev/null)"
+finish
