@@ -52,6 +52,10 @@ const noc_pass_row noc_passes[NOC_PASS_COUNT] = {
 
 const char *noc_pass_name(noc_pass pass) { return (unsigned)pass < NOC_PASS_COUNT ? noc_passes[pass].name : "unknown"; }
 
+bool noc_pass_without_lights(noc_pass pass) {
+    return pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY || pass == NOC_PASS_HEADLIGHT;
+}
+
 bool noc_stage_has(const noc_stage *stage, noc_pass pass) {
     for (int i = 0; i < stage->count; i++)
         if (stage->passes[i] == pass)

@@ -94,6 +94,9 @@ void noc_plan_make(const noc_render_params *params, bool map, int history_set, b
 /* Is visibility a part of the target functions that reuse weighs with? Passes are told by FRAME_BIAS_RAYS. */
 bool noc_uses_bias_rays(const noc_render_params *params);
 
+/* Is the pass run where the scene has no lights? */
+bool noc_pass_without_lights(noc_pass pass);
+
 /* Does a stage of the plan have the pass? */
 bool noc_stage_has(const noc_stage *stage, noc_pass pass);
 

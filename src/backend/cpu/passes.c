@@ -450,8 +450,6 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         [NOC_PASS_HEADLIGHT] = headlight,
         [NOC_PASS_SKY] = sky,
     };
-    bool without_lights =
-        pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY || pass == NOC_PASS_HEADLIGHT;
-    if (run->ctx.light_count || without_lights)
+    if (run->ctx.light_count || noc_pass_without_lights(pass))
         passes[pass](run, w, t);
 }

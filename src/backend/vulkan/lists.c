@@ -103,16 +103,6 @@ static noc_status fit_cache(vk_view *v, size_t tiles) {
     return NOC_OK;
 }
 
-/* Room for `bytes` at least; what was there is gone. */
-static noc_status fit(vk_view *v, size_t bytes, vk_buffer *b) {
-    if (b->bytes >= bytes)
-        return NOC_OK;
-    noc_status status = noc_vk_finish_flights(v);
-    noc_vk_free_buffer(v->device, b);
-    return status == NOC_OK ? noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, "what lights are seen", b)
-                            : status;
-}
-
 noc_status noc_vk_view_fit_learning(vk_view *v, const frame_constants *c) {
     enum { MANY_ROWS = 1 << 16, A_TILE = 4 }; /* few tiles have as many cells as blocks */
     vk_learning *l = &v->learning;
@@ -121,9 +111,10 @@ noc_status noc_vk_view_fit_learning(vk_view *v, const frame_constants *c) {
     l->rows = (uint32_t)rows;
     noc_status status = fit_cache(v, tiles);
     if (status == NOC_OK)
-        status = fit(v, 4 * (SEEN_HEAD + tiles * (l->room + 1) + rows * (ROW_COUNTS + l->room)), &l->observed);
+        status = noc_vk_fit_buffer(v, 4 * (SEEN_HEAD + tiles * (l->room + 1) + rows * (ROW_COUNTS + l->room)),
+                                   "what lights are seen", &l->observed);
     if (status == NOC_OK)
-        status = fit(v, (size_t)v->b.blocks_x * v->b.blocks_y * 4, &l->bright);
+        status = noc_vk_fit_buffer(v, (size_t)v->b.blocks_x * v->b.blocks_y * 4, "what lights are seen", &l->bright);
     return status;
 }
 

@@ -74,12 +74,7 @@ static bool make_host(vk_views *w, uint32_t aovs, size_t blocks) {
 }
 
 static noc_status make_buffer(vk_view *v, size_t bytes, vk_buffer *out) {
-    if (out->bytes >= bytes)
-        return NOC_OK;
-    noc_status status = noc_vk_finish_flights(v);
-    noc_vk_free_buffer(v->device, out);
-    return status == NOC_OK ? noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, "views of a picture", out)
-                            : status;
+    return noc_vk_fit_buffer(v, bytes, "views of a picture", out);
 }
 
 /* The first light of each light's emitter. */

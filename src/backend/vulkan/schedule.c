@@ -298,10 +298,8 @@ static void schedule_pass(scheduling *s, noc_pass pass) {
         [NOC_PASS_HEADLIGHT] = headlight,
         [NOC_PASS_SKY] = sky,
     };
-    bool without_lights =
-        pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY || pass == NOC_PASS_HEADLIGHT;
     s->pass = pass;
-    if (passes[pass] && (s->facts->lights || without_lights))
+    if (passes[pass] && (s->facts->lights || noc_pass_without_lights(pass)))
         passes[pass](s);
 }
 

@@ -103,6 +103,14 @@ static noc_status fit_rays(vk_view *v, size_t rays) {
     return NOC_OK;
 }
 
+noc_status noc_vk_fit_buffer(vk_view *v, size_t bytes, const char *what, vk_buffer *b) {
+    if (b->bytes >= bytes)
+        return NOC_OK;
+    noc_status status = noc_vk_finish_flights(v);
+    noc_vk_free_buffer(v->device, b);
+    return status == NOC_OK ? noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, what, b) : status;
+}
+
 noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch) {
     vk_picture *b = &v->b;
     noc_status status = NOC_OK;
@@ -112,12 +120,8 @@ noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch) {
                          b->height);
     if (b->ray_room < rays)
         status = fit_rays(v, rays);
-    if (status == NOC_OK && v->scratch.bytes < scratch) {
-        status = noc_vk_finish_flights(v);
-        noc_vk_free_buffer(v->device, &v->scratch);
-        if (status == NOC_OK)
-            status = noc_vk_make_buffer(v->device, scratch, 0, VK_PLACE_DEVICE, "scratch of a frame", &v->scratch);
-    }
+    if (status == NOC_OK)
+        status = noc_vk_fit_buffer(v, scratch, "scratch of a frame", &v->scratch);
     if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)
         status = make(v, 4, &b->instance);
     return status;

@@ -339,6 +339,9 @@ size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs);
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets);
 /* Room for so many rays, so much scratch, and for instances where the scene has some. */
 noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch);
+/* Makes a buffer of `bytes` at least of an empty or smaller one, whose contents are lost. what: as in
+ * noc_vk_make_buffer. */
+noc_status noc_vk_fit_buffer(vk_view *v, size_t bytes, const char *what, vk_buffer *b);
 /* Room for the lights of the frame before, where the plan reuses what it made, and whether it can be. */
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
