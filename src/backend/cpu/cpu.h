@@ -282,7 +282,7 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile t);
 void noc_cpu_resample(stage_run *run, worker *w, tile t);
 void noc_cpu_shade_shared(stage_run *run, worker *w, tile t);
 /* learning.c */
-/* What the rays of a tile have found goes into its cells, and is kept to be learned. */
+/* Counts the shared rays of a tile, and those that arrived, in the cells of the visibility cache that it lies in. */
 void noc_cpu_note_observations(stage_run *run, worker *w, tile t);
 float noc_cpu_sum_in_halves(float *x, int n); /* of n numbers, a power of two; overwrites them */
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */

@@ -220,7 +220,7 @@ typedef struct ray_draw {
     int rays;             /* the block has so many of them, one after the other */
 } ray_draw;
 
-/* What the rays of a block have hit: core/primary.h. */
+/* The triangles that a block's primary rays hit, as core/primary.h reads them. */
 typedef struct struck_block {
     uint32_t lanes, placed, textured; /* that hit a triangle; of these on an instance; on a texture */
     ALIGNED float at[3][3][BLOCK];    /* corner, coordinate */

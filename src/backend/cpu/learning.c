@@ -1,5 +1,5 @@
-/* What the shared rays of a frame observe, kept a tile and thread until the frame is complete, and then learned
- * (light/learned.h). */
+/* Observations by the shared rays of a frame. Each thread keeps those of its tiles; the visibility cache learns from
+ * them when the frame is complete (light/learned.h). */
 #include "backend/cpu/cpu.h"
 
 #include "core/list_bright.h"
