@@ -19,6 +19,10 @@ echo '{ "scene": { "name": "a", "inputs": ["builtin:single"] }, "cameras": [ { "
 refused "render without a driver" '^nocturne: vulkan: .' render builtin:city
 refused "bench without a driver" '^nocturne: vulkan: .' bench builtin:city
 refused "experiment without a driver" '^nocturne: vulkan: .' experiment spec.json
+echo broken >broken.json
+VK_DRIVER_FILES=broken.json
+refused "a driver whose manifest is broken" "^nocturne: vulkan: .*manifest is broken" render builtin:city
+VK_DRIVER_FILES="$work/no-driver.json"
 expect "an animation without a driver" 1 '^nocturne: vulkan: .' render $small --animate --backend vulkan -o a-%d.png
 expect "influence without a driver" 1 '^nocturne: vulkan: .' influence builtin:city --region point:0,0 --backend vulkan
 expect "view without a driver" 1 '^nocturne: vulkan: .' view builtin:city --port 0 --backend vulkan

@@ -47,6 +47,13 @@ static bool has_layer(void) {
     return false;
 }
 
+static bool validates(noc_log *log) {
+    bool asked = getenv("NOCTURNE_VULKAN_VALIDATION") != NULL, has = asked && has_layer();
+    if (asked && !has)
+        noc_warn(log, "vulkan: NOCTURNE_VULKAN_VALIDATION has no effect: no validation layer on this machine");
+    return has;
+}
+
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT type,
                                                  const VkDebugUtilsMessengerCallbackDataEXT *data, void *user) {
@@ -155,7 +162,7 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
     pthread_mutex_init(&d->host_lock, NULL);
     noc_status status = (d->pool = noc_pool_create(params->threads)) ? NOC_OK : noc_no_memory(log, "device");
     if (status == NOC_OK)
-        status = make_instance(d, getenv("NOCTURNE_VULKAN_VALIDATION") != NULL && has_layer());
+        status = make_instance(d, validates(log));
     if (status == NOC_OK && !(d->physical = noc_vk_physical_device(d->instance, number)))
         status = noc_error(log, NOC_ERR_UNSUPPORTED, "vulkan: device %d has gone", number);
     if (status == NOC_OK)

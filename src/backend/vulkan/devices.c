@@ -23,7 +23,8 @@ static const char *load_instance(const VkInstanceCreateInfo *info, VkInstance *i
     case VK_SUCCESS: volkLoadInstance(*instance); return NULL;
     case VK_ERROR_INCOMPATIBLE_DRIVER:
         return "no Vulkan driver on this machine (of NVIDIA, or Debian's mesa-vulkan-drivers)";
-    case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of memory";
+    case VK_ERROR_OUT_OF_HOST_MEMORY: /* the loader's answer to a manifest that is no JSON, too */
+        return "out of memory, or a driver's manifest is broken (VK_LOADER_DEBUG=error names it)";
     case VK_ERROR_LAYER_NOT_PRESENT: return "no validation layer on this machine";
     default: return "the Vulkan loader makes no instance";
     }
