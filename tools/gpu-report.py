@@ -19,6 +19,11 @@ DEVICE_TESTS = re.compile(r"vulkan|dialect|list_frame")
 # Chips whose rays are computed by the shader cores: what they take says nothing of cards that have cores for it.
 WITHOUT_RAY_CORES = re.compile(r"\b(GH200|GB200|[AHB][12368]00|H20|A30|[PV]100|MI\d{2,3}[AX]?|GTX 1\d{3}|"
                                r"TITAN (V|Xp?))\b", re.I)
+# Frames of a setup in the table of windows, and runs of one in that of cars.
+FRAMES, CAR_RUNS = 7, 3
+# Frames at the start of a run that are no part of its median: the first makes pipelines, the second those of reuse.
+FIRST_FRAMES = 2
+FIRST = "first frame, ms by the clock"
 SPECS = {"frame-times": "hlavova-frame-times", "cars": "hlavova-cars"}
 # Hlavova 2025, tables 6.2 and 6.3, Prague, ms on an RTX 3060 at 1920x1080: lamps, and lamps and windows.
 THESIS = {"SRIS #1": (6.94, 7.30), "SRIS #5": (7.09, 11.63), "SRIS #10": (7.19, 16.95), "SRIS #20": (7.19, 27.03),
@@ -67,12 +72,15 @@ def pack_specs(source, pack):
 
 
 def size_specs(specs, size):
-    """Times are what is wanted: a reference of one cheap frame, one run."""
+    """Times are what is wanted: a reference of one cheap frame. A moving camera has rows of its last frame alone, so
+    cars get repetitions, of whose last frames a median can be told."""
     width, height = map(int, size.split("x"))
     for name in SPECS:
         spec = json.load(open("%s/%s.json" % (specs, name), encoding="utf-8"))
-        spec.update({"size": size, "repetitions": 1, "shown": [],
+        spec.update({"size": size, "repetitions": CAR_RUNS if name == "cars" else 1, "shown": [],
                      "reference": {"method": "ris", "candidates": "uniform", "frames": 1}})
+        if name == "frame-times":
+            spec["frames"] = FRAMES
         spec.pop("crop", None)
         spec.pop("light-view", None)
         json.dump(spec, open("%s/%s-sized.json" % (specs, name), "w", encoding="utf-8"), indent=1)
@@ -123,6 +131,10 @@ class Run:
     def has_ray_cores(self):
         return not self.software and not WITHOUT_RAY_CORES.search(self.name)
 
+    def took(self):
+        seconds, *stopped = (read(self.work + "/took") or "?").split()
+        return ("**the run was stopped by a signal after %s s**" if stopped else "the whole run took %s s") % seconds
+
     def status(self, name):
         return next((s[1] for s in self.steps if s[0] == name), None)
 
@@ -135,6 +147,8 @@ class Run:
             return "no time was left"
         if status in ("124", "137"):
             return "it was stopped at its limit"
+        if status == "stopped":
+            return "the run was stopped"
         said = [l for l in read("%s/%s.err" % (self.work, name)).splitlines() if l.startswith("nocturne:")]
         return said[-1].removeprefix("nocturne: ") if said else "it ended with status " + status
 
@@ -145,7 +159,7 @@ def head(run):
     if read(run.work + "/smi.out"):
         facts.append("nvidia-smi: " + read(run.work + "/smi.out").replace("\n", "; "))
     facts += ["Commit: " + read(run.work + "/commit", "unknown"),
-              "Pictures: %s px; the whole run took %s s" % (run.size, read(run.work + "/took", "?"))]
+              "Pictures: %s px; %s" % (run.size, run.took())]
     lines += ["- " + f for f in facts] + [""]
     if run.software:
         lines += ["**This is software on a processor, no GPU.** Its figures show that the report works. They say "
@@ -156,7 +170,8 @@ def head(run):
                   "3060. What carries over is what passes do between rays, and quotients of frames that send equal "
                   "rays.", ""]
     lines += ["Made by `make gpu-report` (`tools/gpu-report.sh`). Times are medians, by the clock unless said "
-              "otherwise. The thesis is Hlavová 2025 ([hlavova.md](../hlavova.md)), measured on an RTX 3060.", ""]
+              "otherwise. First frames, which make pipelines and fill caches, are in columns of their own and no part "
+              "of a median. The thesis is Hlavová 2025 ([hlavova.md](../hlavova.md)), measured on an RTX 3060.", ""]
     return "\n".join(lines)
 
 
@@ -174,6 +189,8 @@ def tests(run):
             why = "left out: no time was left"
         elif status in ("124", "137"):
             why = "stopped at its limit"
+        elif status == "stopped":
+            why = "stopped with the run"
         elif planned and planned > len(results):
             why = "ended before its end, status " + status
         else:
@@ -192,6 +209,17 @@ def without(run, step, title):
     return "## %s\n\nNot measured: %s.\n" % (title, run.why(step) or "its file is not whole")
 
 
+def left_out(bench, table_name):
+    """Rows of a table of bench that had no time or memory."""
+    left = ["%s (%s)" % (l["what"], l.get("why", "")) for l in bench.get("left_out", []) if l["table"] == table_name]
+    return "\nLeft out: %s.\n" % "; ".join(left) if left else ""
+
+
+def unfinished(run, step):
+    """A table that has rows of a step that did not end by itself."""
+    return "\nNot whole: %s.\n" % run.why(step) if run.why(step) else ""
+
+
 def floor(run):
     title = "Frame over trace floor"
     bench = read_json(run.work + "/floor.json")
@@ -203,22 +231,32 @@ def floor(run):
         seconds, floor_seconds = r.get(run.seconds), r.get("floor_" + run.seconds)
         rays = r.get("rays_shadow", 0) + r.get("rays_primary", 0)
         out.append(["%s, %s" % (r["name"], r["view"]), number(1e3 * seconds), number(ratio(seconds, floor_seconds)),
-                    number(ratio(rays, floor_seconds) and 1e-6 * rays / floor_seconds), str(r["frames"])])
+                    number(ratio(rays, floor_seconds) and 1e-6 * rays / floor_seconds), str(r["frames"]),
+                    number(1e3 * r["first_wall_s"])])
     text = ("## %s\n\n`builtin:city`, %s triangles, %s lights. The floor traces the frame's rays and does nothing "
             "else.\n\n" % (title, "{:,}".format(bench["scene"]["triangles"]), "{:,}".format(bench["scene"]["lights"])))
-    text += table(["Method, view", "ms a frame", "over its floor", "million rays a second in the floor", "frames"], out)
-    passes = []
+    text += table(["Method, view", "ms a frame", "over its floor", "million rays a second in the floor", "frames",
+                   FIRST], out)
+    return text + left_out(bench, "floor") + unfinished(run, "floor")
+
+
+def passes(run):
+    bench = read_json(run.work + "/floor.json")
+    rows = bench and bench["tables"].get("floor")
+    if not rows:
+        return without(run, "floor", "Milliseconds a pass")
+    found = []
     for r in rows:
         for p in r.get("passes", []):
-            if p["pass"] not in passes:
-                passes.append(p["pass"])
+            if p["pass"] not in found:
+                found.append(p["pass"])
     street = [r for r in rows if r["view"] == "street"]
     of = {r["name"]: {p["pass"]: p["thread_s"] for p in r.get("passes", [])} for r in street}
-    text += ("\n## Milliseconds a pass\n\n%s, street. A pass that a method does not have has none.\n\n" %
-             ("Thread time" if run.software else "Timestamps of the device"))
+    text = ("## Milliseconds a pass\n\n%s, street, of the frames of the first table. A pass that a method does not "
+            "have has none.\n\n" % ("Thread time" if run.software else "Timestamps of the device"))
     return text + table(["Pass"] + [r["name"] for r in street],
                         [[p] + [number(1e3 * of[r["name"]][p]) if p in of[r["name"]] else "" for r in street]
-                         for p in passes])
+                         for p in found])
 
 
 def growth(run):
@@ -232,12 +270,11 @@ def growth(run):
             grown, rays = ratio(r[run.seconds], first[run.seconds]), ratio(r["floor_" + run.seconds],
                                                                            first["floor_" + run.seconds])
             out.append([r["name"], number(1e3 * r[run.seconds]), number(grown), number(rays),
-                        number(ratio(grown, rays))])
-        text += ("`builtin:mess`, `%s`. Lights have shapes, so that rays take longer with more of them: the last "
-                 "column has that divided out.\n\n" % bench["method"])
-        text += table(["Lights", "ms a frame", "over the first", "of its floor", "at equal rays"], out)
-        left = [l["what"] for l in bench.get("left_out", []) if l.get("table") == "lights"]
-        text += "\nLeft out: %s.\n" % ", ".join(left) if left else ""
+                        number(ratio(grown, rays)), number(1e3 * r["first_wall_s"])])
+        text += ("`builtin:mess`, `%s`. Lights have shapes, so that rays take longer with more of them: the column "
+                 "*at equal rays* has that divided out.\n\n" % bench["method"])
+        text += table(["Lights", "ms a frame", "over the first", "of its floor", "at equal rays", FIRST], out)
+        text += left_out(bench, "lights") + unfinished(run, "growth")
     else:
         text += "Not measured: %s.\n" % (run.why("growth") or "its file is not whole")
     if windows and len(windows) > 1:
@@ -274,23 +311,28 @@ def windows(run):
     rows = rows_of(run, "frame-times")
     if not rows:
         return without(run, "frame-times", title)
-    times = {key: median([float(r[run.seconds]) for r in frames if int(r["frame"]) > 1])
+    times = {key: median([float(r[run.seconds]) for r in frames if int(r["frame"]) > FIRST_FRAMES])
              for key, frames in rows.items()}
+    first = {key: float(r["wall_s"]) for key, frames in rows.items() for r in frames if int(r["frame"]) == 1}
     scenes, configs = names(rows, 0), names(rows, 1)
     places = list(dict.fromkeys(s.rsplit(", ", 1)[0] for s in scenes))
     text = ("## %s\n\nTables 6.2 and 6.3 of the thesis (spec hlavova-frame-times): ms a frame with lamps alone, and in "
-            "brackets how many times as long with the windows that are lit at 21 h, and with all of them lit. Prague "
-            "is the thesis's own, by its RTX 3060.\n\n" % title)
+            "brackets how many times as long with the windows that are lit at 21 h, and with all of them lit. Medians "
+            "of frames %d to %d; first frames are those of the three. Prague is the thesis's own, by its RTX 3060.\n\n"
+            % (title, FIRST_FRAMES + 1, FRAMES))
     out = []
     for c in configs:
         line = [c]
         for place in places:
-            cells = [times.get(("%s, %s" % (place, k), c)) for k in ("lamps", "lamps and windows", "all windows lit")]
+            keys = [("%s, %s" % (place, k), c) for k in ("lamps", "lamps and windows", "all windows lit")]
+            cells = [times.get(k) for k in keys]
             line.append("%s (%s, %s)" % (number(cells[0] and 1e3 * cells[0]), number(ratio(cells[1], cells[0])),
                                          number(ratio(cells[2], cells[0]))))
+            line.append(" / ".join(number(1e3 * first[k] if k in first else None) for k in keys))
         thesis = THESIS.get(c)
         out.append(line + ["%s (%.2g)" % (number(thesis[0]), thesis[1] / thesis[0]) if thesis else ""])
-    return text + table(["Setup"] + places + ["Prague, thesis"], out)
+    heads = [h for place in places for h in (place, "first frames, ms")]
+    return text + table(["Setup"] + heads + ["Prague, thesis"], out) + unfinished(run, "frame-times")
 
 
 def cars(run):
@@ -299,18 +341,25 @@ def cars(run):
     if not rows:
         return without(run, "cars", title)
     total = run.seconds.replace("_s", "_total_s")
-    times = {key: float(frames[-1][total]) / int(frames[-1]["frame"]) for key, frames in rows.items()}
+    frames = max(int(r["frame"]) for runs in rows.values() for r in runs)
+    times = {key: median([float(r[run.seconds]) for r in runs]) for key, runs in rows.items()}
+    # What a run took beyond as many of its last frames: pipelines are made and caches filled in several.
+    starts = {key: float(runs[0][total]) - frames * times[key] for key, runs in rows.items()}
     scenes, configs = names(rows, 0), names(rows, 1)
     place = scenes[0].rsplit(", ", 1)[0]
     out = []
     for c in configs:
-        cells = [times.get(("%s, %s" % (place, k), c)) for k in ("no cars", "cars at rest", "cars driving")]
+        keys = [("%s, %s" % (place, k), c) for k in ("no cars", "cars at rest", "cars driving")]
+        cells = [times.get(k) for k in keys]
         out.append([c, number(cells[0] and 1e3 * cells[0]), number(ratio(cells[1], cells[0])),
-                    number(ratio(cells[2], cells[1]))])
-    return ("## %s\n\nSpec hlavova-cars, %s: mean of the frames of a run, the first among them. Cars that drive have "
-            "what rays are traced in built anew each frame; the thesis loses some 3 frames a second by that.\n\n" %
-            (title, place) +
-            table(["Setup", "ms a frame without cars", "at rest over none", "driving over at rest"], out))
+                    number(ratio(cells[2], cells[1])),
+                    " / ".join(number(1e3 * starts[k] if k in starts else None) for k in keys)])
+    return ("## %s\n\nSpec hlavova-cars, %s: frame %d, the median of %d runs. Cars that drive have what rays are "
+            "traced in built anew each frame; the thesis loses some 3 frames a second by that. The last column is what "
+            "the first run took beyond %d such frames: its first frames.\n\n" %
+            (title, place, frames, CAR_RUNS, frames) +
+            table(["Setup", "ms a frame without cars", "at rest over none", "driving over at rest",
+                   "first frames, ms more"], out) + unfinished(run, "cars"))
 
 
 def processor(run):
@@ -320,18 +369,21 @@ def processor(run):
         return without(run, "cpu", "The processor beside it")
     return ("## The processor beside it\n\n%s, %d cores, the same frames by the CPU backend, by the clock.\n\n" %
             (bench["processor"], bench["cores"]) +
-            table(["Method, view", "ms a frame", "over its floor"],
+            table(["Method, view", "ms a frame", "over its floor", FIRST],
                   [["%s, %s" % (r["name"], r["view"]), number(1e3 * r["wall_s"]),
-                    number(ratio(r["wall_s"], r["floor_wall_s"]))] for r in rows]))
+                    number(ratio(r["wall_s"], r["floor_wall_s"])), number(1e3 * r["first_wall_s"])] for r in rows]) +
+            left_out(bench, "floor"))
 
 
 def page(work, out):
     run = Run(work)
-    parts = [head(run), tests(run), floor(run), windows(run), growth(run), cars(run), processor(run)]
+    parts = [head(run), tests(run), floor(run), windows(run), growth(run), cars(run), passes(run),
+             processor(run)]
     slug = re.sub(r"[^a-z0-9]+", "-", run.name.lower()).strip("-") or "none"
     path = "%s/%s.md" % (out, slug)
-    with open(path, "w", encoding="utf-8") as file:
+    with open(path + ".new", "w", encoding="utf-8") as file:  # a signal never leaves half a page
         file.write("\n".join(parts))
+    os.replace(path + ".new", path)
     log = open(out + "/log.txt", "w", encoding="utf-8")
     for name in sorted(os.listdir(work)):
         if name.endswith((".out", ".err", ".txt", ".json")):

@@ -5,10 +5,11 @@
 #   C library's, tests, scenes and specs. It runs on a machine that has a driver and Python 3 and nothing else of ours:
 #       python3 -m tarfile -e FILE.tar.xz FOLDER && sh FOLDER/gpu-report/gpu-report.sh run OUT
 #   WITH_LOADER=1 packs this machine's Vulkan loader, too, for a machine that has a driver and no loader.
-# gpu-report.sh run OUT: in an unpacked pack. OUT gets DEVICE.md and what it was made of, eight files at most.
+# gpu-report.sh run OUT: in an unpacked pack. OUT gets DEVICE.md and what it was made of, eight files at most. The page
+#   is written again after each step, and after a signal, so that it is there whenever the run is ended.
 # Environment: DEVICE, a device's name or number as --device takes it; SIZE of pictures (1920x1080, in software 96x54);
-#   BUDGET in seconds (520): steps that do not fit are left out, and the page lists them; TEST_LIMIT of each test
-#   program (120); BUILD, the build folder.
+#   BUDGET in seconds (520): each step ends by a share of it, and the page lists those that had no time; TEST_LIMIT,
+#   seconds of one test program at most; BUILD, the build folder.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 
@@ -58,19 +59,43 @@ pack() {
 
 # ---- running ----
 
-# step NAME SECONDS COMMAND...: its output in logs, one line of steps.txt; no longer than what is left
+# until_share PERCENT: seconds left until this share of the budget is used
+until_share() {
+    echo $((BUDGET * $1 / 100 - $(date +%s) + begun))
+}
+
+# step NAME SECONDS COMMAND...: runs it no longer than that, its output in logs, one line of steps.txt; then the page
 step() {
     name=$1 limit=$2
     shift 2
-    left=$((BUDGET - $(date +%s) + begun))
-    [ $left -lt "$limit" ] && limit=$left
-    if [ "$limit" -lt 3 ]; then
+    if [ -n "$stopped" ] || [ "$limit" -lt 3 ]; then
         echo "$name - 0" >>"$work/steps.txt"
         return
     fi
     before=$(date +%s)
-    env LD_LIBRARY_PATH="$libraries" timeout -k 5 "$limit" "$@" >"$work/$name.out" 2>"$work/$name.err" </dev/null
-    echo "$name $? $(($(date +%s) - before))" >>"$work/steps.txt"
+    env LD_LIBRARY_PATH="$libraries" timeout -k 5 "$limit" "$@" >"$work/$name.out" 2>"$work/$name.err" </dev/null &
+    child=$!
+    wait "$child"
+    status=$?
+    if [ -n "$stopped" ]; then # the signal ended the wait alone
+        wait "$child"
+        status=stopped
+    fi
+    child=
+    echo "$name $status $(($(date +%s) - before))" >>"$work/steps.txt"
+    [ ! -e "$work/chosen" ] || page
+}
+
+# The page of what is there so far.
+page() {
+    echo "$(($(date +%s) - begun)) ${stopped:-}" >"$work/took"
+    python3 "$here/gpu-report.py" "$work" "$out" >"$work/page.txt"
+}
+
+# A signal ends the step that runs, leaves out the others, and keeps the page.
+stop() {
+    stopped=stopped
+    [ -n "$child" ] && kill "$child" 2>/dev/null
 }
 
 # The first driver of hardware, else that of the tests (vulkan-driver.sh); nothing: the loader finds its own.
@@ -90,8 +115,9 @@ find_driver() {
 run() {
     mkdir -p "$1" && out=$(cd "$1" && pwd) && work=$(mktemp -d) || exit 1
     trap 'rm -rf "$work"' EXIT
-    begun=$(date +%s)
+    begun=$(date +%s) stopped='' child=''
     BUDGET=${BUDGET:-520}
+    trap stop TERM INT HUP
     libraries=$here/lib
     ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || libraries=$here/lib:$here/loader
     tests=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/nocturne-tests
@@ -107,35 +133,49 @@ run() {
     step devices 60 "$program" --version
     cp "$work/devices.out" "$out/devices.txt"
     nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader >"$work/smi.out" 2>/dev/null
-    # The device is the one named, else the first that is usable.
-    device=${DEVICE:-$(sed -n 's/^  vulkan *\([0-9]*\) [^:]*$/\1/p' "$work/devices.out" | head -n 1)}
+    # The device of this number, else of this name, else the first that is usable.
+    grep '^  vulkan *[0-9]* [^:]*$' "$work/devices.out" >"$work/usable.txt"
+    device=$({
+        grep "^  vulkan *${DEVICE:-none} " "$work/usable.txt"
+        grep -iF -- "${DEVICE:-}" "$work/usable.txt"
+    } | awk 'NR == 1 { print $2 }')
+    device=${device:-0}
     kind=$(sed -n "s/^  vulkan *$device \([a-z]*\),.*/\1/p" "$work/devices.out")
     size=1920x1080 frames=9
     [ "$kind" = software ] && size=96x54 frames=3
     size=${SIZE:-$size}
-    on="--backend vulkan --device ${device:-0}"
     printf '%s\n%s\n%s\n' "$device" "$kind" "$size" >"$work/chosen"
+    page
 
-    # What says most comes first.
-    # shellcheck disable=SC2086 # words
-    step floor 100 "$program" bench $on --only floor,passes --size $size --frames $frames --time 70 \
-        -o "$work/floor.json"
-    python3 "$here/gpu-report.py" --sized "$here/specs" "$size"
-    # shellcheck disable=SC2086
-    for spec in frame-times cars; do
-        step $spec 100 "$program" experiment "$here/specs/$spec-sized.json" $on -o "$work/$spec" -q
-    done
-    # shellcheck disable=SC2086
-    step growth 90 "$program" bench $on --only lights,windows --method restir-uniform --size $size --frames $frames \
-        --time 75 -o "$work/growth.json"
+    # Tests first, then what says most. A step's end is a share of the budget, so what one leaves, the next has.
+    count=$(wc -l <"$here/tests.txt")
     while IFS= read -r test; do
+        limit=$(($(until_share 29) / count))
+        [ "$limit" -gt "${TEST_LIMIT:-$limit}" ] && limit=$TEST_LIMIT
+        count=$((count - 1))
         # shellcheck disable=SC2046 # its arguments
-        step "test-${test%% *}" "${TEST_LIMIT:-120}" $(echo "${test#* }" | sed "s|@PACK@|$here|g")
+        step "test-${test%% *}" "$limit" $(echo "${test#* }" | sed "s|@PACK@|$here|g")
     done <"$here/tests.txt"
-    # shellcheck disable=SC2086
-    step cpu 60 "$program" bench --backend embree --only floor --size $size --frames 3 --time 45 -o "$work/cpu.json"
-    echo $(($(date +%s) - begun)) >"$work/took"
-    python3 "$here/gpu-report.py" "$work" "$out"
+    python3 "$here/gpu-report.py" --sized "$here/specs" "$size"
+    bench floor 43 --backend vulkan --device "$device" --only floor,passes --frames $frames
+    experiment frame-times 64
+    bench growth 79 --backend vulkan --device "$device" --only lights,windows --method restir-uniform --frames $frames
+    experiment cars 93
+    bench cpu 100 --backend embree --only floor --frames 3
+    page && cat "$work/page.txt" && [ -z "$stopped" ]
+}
+
+# bench NAME PERCENT OPTION...: its own limit is less than the step's, so that it ends with whole tables
+bench() {
+    name=$1 limit=$(until_share "$2")
+    shift 2
+    step "$name" "$limit" "$program" bench "$@" --size "$size" --time $((limit * 9 / 10)) -o "$work/$name.json"
+}
+
+# experiment NAME PERCENT
+experiment() {
+    step "$1" "$(until_share "$2")" "$program" experiment "$here/specs/$1-sized.json" --backend vulkan \
+        --device "$device" -o "$work/$1" -q
 }
 
 case "${1:-}" in
@@ -152,8 +192,10 @@ run)
     folder=$(cd "$here/.." && pwd)
     pack "$folder/build/gpu-report"
     out=$(mktemp -d) || exit 1
-    sh "$folder/build/gpu-report/gpu-report.sh" run "$out" || exit 1
+    sh "$folder/build/gpu-report/gpu-report.sh" run "$out"
+    status=$?
     mkdir -p "$folder/docs/gpu" && cp "$out"/*.md "$folder/docs/gpu/" && rm -r "$out"
+    exit $status
     ;;
 *)
     sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
