@@ -65,7 +65,8 @@ static void hash_camera(hash_state *hash, const noc_camera *c) {
 
 /* A reference is named by what the scene holds, not by the files it was read from: an OBJ's materials lie in another
  * file than it, and what code makes of a file may change. So specs that show the same share it, whatever they call
- * their inputs. */
+ * their inputs. Backends share it, too: both estimate the same picture without bias, and one truth for both is what
+ * compares them; which of them made it is kept beside it. */
 void lab_name_reference(lab_session *lab) {
     const lab_spec *spec = lab->spec;
     hash_state hash = hash_start();
@@ -88,13 +89,20 @@ static void name_build(lab_session *lab) {
     hash_finish(&hash, lab->build);
 }
 
+void lab_name_device(const lab_session *lab, char text[LAB_DEVICE]) {
+    const noc_device_info *d = &lab->device;
+    noc_snprintf(text, LAB_DEVICE, "%s, %s%s%s", noc_backend_name(d->backend), d->name, *d->driver ? ", " : "",
+                 d->driver);
+}
+
 void lab_name_machine(lab_session *lab) {
-    char model[121];
+    char model[121], device[LAB_DEVICE];
     noc_processor_name(model, sizeof(model));
     struct utsname name = { .sysname = "" };
     uname(&name);
-    noc_snprintf(lab->machine, sizeof(lab->machine), "%s, %ld processors, %.20s %.40s", model,
-                 sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine);
+    lab_name_device(lab, device);
+    noc_snprintf(lab->machine, sizeof(lab->machine), "%s, %ld processors, %.20s %.40s; rendered by %s", model,
+                 sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine, device);
     name_build(lab);
 }
 
@@ -106,7 +114,7 @@ void lab_name_run(const lab_session *lab, lab_run *run) {
     hash_text(&hash, spec->scenes[spec->cameras[run->camera].scene].name);
     hash_text(&hash, spec->cameras[run->camera].name);
     hash_text(&hash, spec->configs[run->config].name);
-    hash_text(&hash, lab->machine); /* times of two machines do not mix */
+    hash_text(&hash, lab->machine); /* rows of two machines do not mix, nor of two devices */
     hash_text(&hash, lab->build);
     hash_options(&hash, &params, false);
     for (int frame = 1; frame <= spec->cameras[run->camera].frames; frame++) {

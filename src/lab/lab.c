@@ -57,8 +57,8 @@ static noc_status plan(lab_session *lab) {
     lab->runs = noc_calloc(lab->run_count, sizeof(*lab->runs));
     lab->holdings = noc_calloc(spec->scene_count, sizeof(*lab->holdings));
     lab->crops = noc_calloc(spec->camera_count, sizeof(*lab->crops));
-    lab->noises = noc_calloc(spec->camera_count, sizeof(*lab->noises));
-    if (!lab->runs || !lab->holdings || !lab->crops || !lab->noises) {
+    lab->truths = noc_calloc(spec->camera_count, sizeof(*lab->truths));
+    if (!lab->runs || !lab->holdings || !lab->crops || !lab->truths) {
         lab->run_count = lab->runs ? lab->run_count : 0;
         return noc_no_memory(lab->log, "runs");
     }
@@ -88,6 +88,7 @@ noc_status noc_lab_create(const noc_lab_spec *spec, const noc_lab_params *params
     lab->cache = cache_folder(params);
     lab->params.folder = lab->params.cache = NULL;
     noc_status status = lab->folder && lab->cache ? plan(lab) : noc_no_memory(log, params->folder);
+    status = status ? status : noc_device_find(&params->device, &lab->device, log);
     status = status ? status : reserve(lab);
     status = status ? status : open_folders(lab);
     if (status) {
@@ -110,7 +111,7 @@ void noc_lab_destroy(noc_lab *lab) {
     free(lab->runs);
     free(lab->holdings);
     free(lab->crops);
-    free(lab->noises);
+    free(lab->truths);
     array_free(&lab->stored);
     free(lab->sum);
     free(lab->folder);
@@ -153,6 +154,12 @@ noc_status noc_lab_run(noc_lab *lab) {
     const lab_spec *spec = lab->spec;
     noc_status status = NOC_OK;
     lab->cancelled = lab->finished = false;
+    for (size_t i = 0; i < spec->config_count; i++)
+        if (spec->configs[i].seconds > 0 && lab->device.kind > NOC_DEVICE_SOFTWARE) {
+            noc_warn(lab->log, "seconds: they are CPU time, and %s renders: a run is longer by the clock",
+                     lab->device.name);
+            break;
+        }
     lab->runs_done = lab->cameras_done = lab->references_made = 0;
     lab->reference_seconds = lab->reference_lost = 0;
     lab->started = noc_wall_seconds();

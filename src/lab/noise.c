@@ -1,4 +1,4 @@
-/* Noise of the reference as it is kept beside it, and what it lacks. */
+/* Noise of the reference and its device as they are kept beside it, and what it lacks. */
 #include "lab/noise.h"
 #include "lab/file.h"
 
@@ -7,12 +7,13 @@
 
 static char *beside(const char *reference) { return noc_format("%.*s.noise", (int)strlen(reference) - 4, reference); }
 
-/* A few numbers that may be lost: where they cannot be written, the report does without them. */
-void lab_keep_noise(const char *reference, const noc_lab_noise *n) {
+/* A line of numbers and one of the device. They may be lost: where they cannot be written, the report does without. */
+void lab_keep_truth(const char *reference, const lab_truth *truth) {
+    const noc_lab_noise *n = &truth->noise;
     char *path = beside(reference), *temporary = path ? noc_format("%s.%ld", path, (long)getpid()) : NULL;
     FILE *file = temporary ? fopen(temporary, "wx") : NULL;
-    bool kept = file && noc_fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n", n->relmse, n->relmse_clamped,
-                                    n->relmse_all, n->relmse_clamped_all, n->mean, n->mean_all) > 0;
+    bool kept = file && noc_fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n%s\n", n->relmse, n->relmse_clamped,
+                                    n->relmse_all, n->relmse_clamped_all, n->mean, n->mean_all, truth->device) > 0;
     if (file)
         kept = !fclose(file) && kept;
     if (temporary && (!kept || rename(temporary, path)))
@@ -21,21 +22,23 @@ void lab_keep_noise(const char *reference, const noc_lab_noise *n) {
     free(path);
 }
 
-noc_lab_noise lab_read_noise(const char *reference) {
+void lab_read_truth(const char *reference, lab_truth *truth) {
     double v[6];
     int read = 0;
-    char text[256], *path = beside(reference), *rest = text;
+    char text[256 + LAB_DEVICE], *path = beside(reference), *rest = text;
     FILE *file = path && !access(path, F_OK) ? lab_open_file(path, NULL) : NULL;
     size_t n = file ? fread(text, 1, sizeof(text) - 1, file) : 0;
     text[n] = 0;
-    for (char *word; read < 6 && (word = strtok_r(rest, " \n", &rest)); read++)
+    char *numbers = strtok_r(rest, "\n", &rest), *device = numbers ? strtok_r(NULL, "\n", &rest) : NULL;
+    for (char *word; read < 6 && numbers && (word = strtok_r(numbers, " ", &numbers)); read++)
         if (!lab_parse_number(word, &v[read]))
             break;
     if (file)
         fclose(file);
     free(path);
-    return read == 6 ? (noc_lab_noise){ v[0], v[1], v[2], v[3], v[4], v[5] }
-                     : (noc_lab_noise){ NAN, NAN, NAN, NAN, NAN, NAN };
+    truth->noise = read == 6 ? (noc_lab_noise){ v[0], v[1], v[2], v[3], v[4], v[5] }
+                             : (noc_lab_noise){ NAN, NAN, NAN, NAN, NAN, NAN };
+    noc_snprintf(truth->device, LAB_DEVICE, "%s", device ? device : noc_backend_name(NOC_BACKEND_EMBREE));
 }
 
 #define LEAST_SHARE 0.01 /* of relMSE: less is not worth a word */

@@ -95,14 +95,16 @@ static noc_image *read_cached(const lab_session *lab, const char *path) {
 }
 
 /* A cache that takes nothing must not cost the work that went into the picture. */
-static void keep(const lab_session *lab, const char *path, const noc_lab_noise *noise) {
+static void keep(const lab_session *lab, const char *path, const lab_truth *truth) {
     noc_display_params display = noc_display_default_params();
-    const char *keys[] = { "content", "made-by" }, *values[] = { lab->reference_key, noc_version() };
+    const char *keys[] = { "content", "made-by", "backend", "device" };
+    const char *values[] = { lab->reference_key, noc_version(), noc_backend_name(lab->device.backend),
+                             lab->device.name };
     noc_log *why = noc_log_create(NULL);
-    if (noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, why))
+    if (noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 4, keys, values }, why))
         noc_warn(lab->log, "the reference is not kept; another run makes it again: %s", noc_log_last_error(why));
     else
-        lab_keep_noise(path, noise);
+        lab_keep_truth(path, truth);
     noc_log_destroy(why);
 }
 
@@ -129,15 +131,16 @@ static noc_status render(lab_session *lab, const char *view, noc_lab_noise *nois
     return status;
 }
 
-static noc_status make(lab_session *lab, const char *view, const char *path, noc_lab_noise *noise) {
+static noc_status make(lab_session *lab, const char *view, const char *path, lab_truth *truth) {
     const lab_spec *spec = lab->spec;
     double start = noc_wall_seconds();
     char took[32], frames[64];
     lab_note(lab, "%s: making the reference, %s of %d x %d px", view,
              noc_text_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width, spec->height);
-    noc_status status = render(lab, view, noise);
+    noc_status status = render(lab, view, &truth->noise);
+    lab_name_device(lab, truth->device);
     if (!status)
-        keep(lab, path, noise);
+        keep(lab, path, truth);
     lab->reference_seconds += noc_wall_seconds() - start;
     lab->references_made++;
     if (!status)
@@ -150,7 +153,7 @@ noc_status lab_make_reference(lab_session *lab, size_t camera) {
     if (status)
         return status;
     char view[LAB_TEXT];
-    noc_lab_noise *noise = &lab->noises[camera];
+    lab_truth *truth = &lab->truths[camera];
     lab_view_name(lab->spec, camera, view);
     lab_name_reference(lab);
     char *path = noc_format("%s/reference-%s.exr", lab->cache, lab->reference_key);
@@ -158,10 +161,12 @@ noc_status lab_make_reference(lab_session *lab, size_t camera) {
         return noc_no_memory(lab->log, view);
     lab->reference = read_cached(lab, path);
     if (lab->reference) {
-        *noise = lab_read_noise(path);
-        lab_note(lab, "%s: reference from %s", view, path);
+        lab_read_truth(path, truth);
+        bool other = lab_backend_of(truth->device) != lab->device.backend;
+        lab_note(lab, "%s: reference from %s%s%s", view, path, other ? ", rendered by " : "",
+                 other ? truth->device : "");
     } else {
-        status = make(lab, view, path, noise);
+        status = make(lab, view, path, truth);
     }
     if (!status && noc_image_is_black(lab->reference))
         noc_warn(lab->log, "%s: the reference is black, so errors say nothing", view);

@@ -120,6 +120,8 @@ static void print_setting(FILE *out, const lab_session *lab) {
     noc_fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(),
                 noc_features(), date, lab->machine, *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
+    if (lab->device.kind > NOC_DEVICE_SOFTWARE)
+        fputs("\n\nCPU seconds are the host's alone: what the device takes is in the seconds by the clock.", out);
     char extent[64];
     if (spec->seconds > 0)
         noc_snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
@@ -371,9 +373,13 @@ static void print_equal_time(FILE *out, lab_series s) {
                      "-: not reached in the frames rendered, or before the first frame is done.\n");
 }
 
-static void print_noise(FILE *out, const lab_session *lab, size_t index) {
-    const noc_lab_noise *n = &lab->noises[index];
+static void print_truth(FILE *out, const lab_session *lab, size_t index) {
+    const lab_truth *truth = &lab->truths[index];
+    const noc_lab_noise *n = &truth->noise;
     bool all = lab->spec->all_pixels;
+    fputs("\nThe reference was rendered by ", out);
+    lab_text(out, truth->device);
+    fputs(".\n", out);
     if (isfinite(n->relmse))
         noc_fprintf(
             out, "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
@@ -429,7 +435,7 @@ static noc_status print_view(FILE *out, const lab_session *lab, size_t camera) {
     fputs("\n## ", out);
     lab_text(out, lab_view_name(spec, camera, view));
     fputc('\n', out);
-    print_noise(out, lab, camera);
+    print_truth(out, lab, camera);
     print_crops(out, lab, camera);
     for (int mode = LAB_MODES - 1; !status && mode >= 0; mode--)
         if (lab_has_mode(spec, camera, mode))

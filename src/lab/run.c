@@ -82,6 +82,7 @@ static noc_status add_row(const measuring *m, int mode, int frame, const noc_ima
     v[COL_FOUND_MEDIAN] = nobody ? NAN : lights->found_median;
     v[COL_FOUND_99] = nobody ? NAN : lights->found_99;
     row->done = true;
+    row->reference = lab_backend_of(lab->truths[m->run->camera].device);
     lab->rows_done++;
     return lab_append(lab, m->run, mode, frame);
 }
@@ -94,8 +95,10 @@ static noc_status keep_picture(const measuring *m, int mode, int frame, const no
     if (!path)
         return NOC_ERR_MEMORY;
     noc_display_params display = noc_display_default_params();
-    const char *keys[] = { "configuration" }, *values[] = { spec->configs[m->run->config].name };
-    noc_status status = noc_image_write(image, path, &display, &(noc_image_meta){ 1, keys, values }, m->lab->log);
+    const noc_device_info *device = &m->lab->device;
+    const char *keys[] = { "configuration", "backend", "device" };
+    const char *values[] = { spec->configs[m->run->config].name, noc_backend_name(device->backend), device->name };
+    noc_status status = noc_image_write(image, path, &display, &(noc_image_meta){ 3, keys, values }, m->lab->log);
     free(path);
     return status;
 }

@@ -55,6 +55,12 @@ const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool 
     return text;
 }
 
+noc_backend_id lab_backend_of(const char *device) {
+    size_t n = strlen(noc_backend_name(NOC_BACKEND_VULKAN));
+    bool vulkan = !strncmp(device, noc_backend_name(NOC_BACKEND_VULKAN), n) && (!device[n] || device[n] == ',');
+    return vulkan ? NOC_BACKEND_VULKAN : NOC_BACKEND_EMBREE;
+}
+
 void lab_note(const lab_session *lab, const char *fmt, ...) {
     char text[1024];
     if (!lab->params.note)

@@ -17,7 +17,8 @@
 
 #include "lab/spec.h"
 
-enum { LAB_KEY = 33 }; /* of a hash */
+enum { LAB_KEY = 33 };     /* of a hash */
+enum { LAB_DEVICE = 500 }; /* of "vulkan, NVIDIA GeForce RTX 3060, NVIDIA 550.54" */
 
 /* Columns of results.csv that are numbers, after those that tell which row it is. */
 enum {
@@ -62,6 +63,7 @@ enum {
 
 typedef struct lab_row {
     bool done;
+    noc_backend_id reference; /* that rendered the reference it was measured against */
     double values[COL_COUNT];
 } lab_row;
 
@@ -80,6 +82,7 @@ typedef struct lab_stored {
     char key[LAB_KEY];
     int mode, frame;
     bool claimed;
+    noc_backend_id reference;
     double values[COL_COUNT];
 } lab_stored;
 
@@ -88,6 +91,12 @@ typedef struct lab_holdings {
     noc_scene_info info; /* its texts belong to the scene, which is gone */
     size_t buildings, lamps;
 } lab_holdings;
+
+/* What is known of a reference beside its picture. */
+typedef struct lab_truth {
+    noc_lab_noise noise;
+    char device[LAB_DEVICE]; /* that rendered it, its backend first */
+} lab_truth;
 
 typedef struct lab_crop {
     int x, y, width, height, scale, columns;
@@ -107,11 +116,13 @@ typedef struct noc_lab {
     size_t rows_broken, rows_twice; /* of results.csv, as it was */
     double started, reference_seconds;
     size_t references_made, cameras_done;
-    int reference_lost; /* frames of a reference that was interrupted: it is not kept */
-    bool cancelled;     /* progress said so */
-    bool finished;      /* the last run came to its end */
-    char path[32];      /* code that ran: "avx2 x8" */
-    char machine[256], build[LAB_KEY];
+    int reference_lost;             /* frames of a reference that was interrupted: it is not kept */
+    bool cancelled;                 /* progress said so */
+    bool finished;                  /* the last run came to its end */
+    char path[32];                  /* code that ran: "avx2 x8" */
+    noc_device_info device;         /* that renders */
+    char machine[LAB_DEVICE + 256]; /* with the device */
+    char build[LAB_KEY];
     double *sum;    /* room for the mean of a picture */
     double *values; /* for a median: one a frame and repetition; while a report is written */
     /* of the present scene and camera */
@@ -123,7 +134,7 @@ typedef struct noc_lab {
     /* kept for the report */
     lab_holdings *holdings; /* a scene */
     lab_crop *crops;        /* a camera */
-    noc_lab_noise *noises;  /* a camera */
+    lab_truth *truths;      /* a camera */
 } lab_session;
 
 lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition);
@@ -134,6 +145,9 @@ char *lab_picture_path(const lab_session *lab, const char *key, int mode, int fr
 char *lab_light_path(const lab_session *lab, const char *key, int frame); /* of the frame's light view; likewise */
 /* Of one shown frame's sheet, or of its light view's; writes into text and returns it. */
 const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool light, char text[LAB_TEXT]);
+
+/* Returns the backend that a device's text begins with; embree where it begins with none. */
+noc_backend_id lab_backend_of(const char *device);
 
 void lab_note(const lab_session *lab, const char *fmt, ...) NOC_PRINTF(2, 3);
 bool lab_go_on(lab_session *lab, const noc_lab_progress *progress); /* false from then on where it was to end */

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define TELLING "scene,camera,configuration,repetition,mode,frame,seed"
+#define TELLING "scene,camera,configuration,repetition,mode,frame,seed,backend,device,reference"
 static const char *const columns[COL_COUNT + 1] = {
     [COL_WALL] = "wall_s",
     [COL_CPU] = "cpu_s",
@@ -53,7 +53,7 @@ static void print_header(char text[1024]) {
 }
 
 static const char *const modes[] = { "alone", "accumulated" };
-enum { FIRST = 7, FIELDS = FIRST + COL_COUNT + 1, MODE = 4, FRAME = 5 };
+enum { FIRST = 10, FIELDS = FIRST + COL_COUNT + 1, MODE = 4, FRAME = 5, REFERENCE = 9 };
 
 /* Splits a line in place; a field in quotes may hold commas and doubled quotes. false: not this many fields. */
 static bool split(char *line, char *fields[FIELDS]) {
@@ -85,6 +85,7 @@ static bool parse_row(char *line, lab_stored *row) {
         return false;
     memcpy(row->key, key, LAB_KEY);
     row->mode = strcmp(fields[MODE], modes[LAB_ACCUMULATED]) ? LAB_ALONE : LAB_ACCUMULATED;
+    row->reference = lab_backend_of(fields[REFERENCE]);
     row->claimed = false;
     for (int i = 0; i < COL_COUNT; i++)
         if (!lab_parse_number(fields[FIRST + i], &row->values[i]))
@@ -116,8 +117,12 @@ static void print_row(const lab_session *lab, FILE *out, const lab_run *run, int
     quote(out, spec->cameras[run->camera].name);
     quote(out, spec->configs[run->config].name);
     noc_fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, lab_params_of(lab, run).seed);
+    quote(out, noc_backend_name(lab->device.backend));
+    quote(out, lab->device.name);
+    const lab_row *row = &run->rows[mode][frame - 1];
+    quote(out, noc_backend_name(row->reference));
     for (int i = 0; i < COL_COUNT; i++)
-        noc_fprintf(out, "%.9g,", run->rows[mode][frame - 1].values[i]);
+        noc_fprintf(out, "%.9g,", row->values[i]);
     noc_fprintf(out, "%s\n", run->key);
 }
 
@@ -210,7 +215,7 @@ static noc_status keep_strange(const lab_session *lab, const char *path) {
     char *old = old_name(lab);
     if (!old)
         return NOC_ERR_MEMORY;
-    noc_warn(lab->log, "%s is a table of another kind; it is kept as %s", path, strrchr(old, '/') + 1);
+    noc_warn(lab->log, "%s is a table of another kind or version; it is kept as %s", path, strrchr(old, '/') + 1);
     noc_status status = put_aside(lab, path, old, false);
     free(old);
     return status;
@@ -245,6 +250,7 @@ noc_status lab_claim(lab_session *lab, lab_run *run) {
         lab->rows_done += !mine->done;
         lab->rows_old += !mine->done;
         mine->done = true;
+        mine->reference = row->reference;
         memcpy(mine->values, row->values, sizeof(mine->values));
     }
     return NOC_OK;

@@ -36,7 +36,8 @@ rows a >a.rows
 test $status = 0 && test "$(wc -l <a/results.csv)" = $((expected + 1)) && test "$choices" -ge 2 && test -s a.rows
 result $? "one row a configuration, camera, repetition, frame and mode; \"*\" is each choice" \
     "$(wc -l <a/results.csv), not $((expected + 1))"
-columns='scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,.*relmse_clamped,bias.*,build_s,memory'
+columns='scene,camera,configuration,repetition,mode,frame,seed,backend,device,reference'
+columns="$columns,wall_s,cpu_s,.*relmse_clamped,bias.*,build_s,memory"
 head -n 1 a/results.csv | grep -q "^$columns"
 result $? "the header names the columns"
 python3 - <<'CHECK'

@@ -59,4 +59,59 @@ sed -n 2p other/results.csv | sed "s|[0-9a-f]*\$|$key|" >>evil/results.csv
 run experiment one.json -o evil --cache cache
 test $status = 0 && test "${#key}" = 32 && test -e victim-frame1.exr
 result $? "a key that leads elsewhere deletes nothing"
+
+# A table of a version that named no backend.
+mkdir former
+python3 - <<'FORMER'
+import csv
+rows = list(csv.reader(open("other/results.csv")))
+drop = [i for i, name in enumerate(rows[0]) if name in ("backend", "device", "reference")]
+assert len(drop) == 3
+with open("former/results.csv", "w") as out:
+    csv.writer(out, lineterminator="\n").writerows([v for i, v in enumerate(r) if i not in drop] for r in rows)
+FORMER
+cp former/results.csv former.csv
+run experiment one.json -o former --cache cache
+test $status = 0 && grep -q 'of another kind or version; it is kept as results.old.csv' err &&
+    cmp -s former.csv former/results.old.csv && grep -q ', 2 of them made now' out
+result $? "a table without backends is put aside, and measured again"
+
+# told FOLDER BACKEND REFERENCE: all rows, the report and the pictures name the backend, and the reference's
+told() {
+    python3 - "$@" <<'TOLD'
+import csv, glob, sys
+folder, backend, reference = sys.argv[1:]
+rows = list(csv.DictReader(open(folder + "/results.csv")))
+assert rows and all((r["backend"], r["reference"]) == (backend, reference) and r["device"] for r in rows), rows
+report = open(folder + "/report.md").read()
+device = rows[0]["device"]
+assert "rendered by %s, %s" % (backend, device.split("(")[0].strip()) in report, device
+assert "The reference was rendered by " + reference in report, reference
+TOLD
+}
+told other embree embree 2>err; result $? "rows and report name backend, device and the reference's backend"
+sed 's/"shown": \[\]/"shown": [1]/' one.json >shown.json
+run experiment shown.json -o both --cache cache
+test $status = 0 && grep -aq embree both/pictures/*.exr; result $? "and so do pictures"
+if "$program" --version | grep '^ *vulkan [0-9]' | grep -qv 'not usable'; then
+    cp both/results.csv both.csv
+    run experiment shown.json -o both --cache cache --backend vulkan
+    test $status = 0 && grep -q '2 rows of results.csv came from other settings' err &&
+        grep -q ', 2 of them made' out && head -n 3 both/results.old.csv | cmp -s - both.csv
+    result $? "no row of the processor is taken for one of a GPU" "$(cat err)"
+    grep -q 'reference from cache/.*, rendered by embree' out && told both vulkan embree 2>err
+    result $? "the reference is shared, and it is said who made it"
+    grep -aq vulkan both/pictures/*.exr && ! grep -alq embree both/pictures/*.exr
+    result $? "pictures of the other backend are gone"
+    run experiment shown.json -o both --cache cache --backend vulkan
+    test $status = 0 && grep -q ', 0 of them made' out; result $? "and a GPU's rows are gone on with"
+    run experiment one.json -o fresh --cache fresh-cache --backend vulkan
+    run experiment one.json -o fresh --cache fresh-cache
+    test $status = 0 && told fresh embree vulkan 2>err; result $? "a GPU's reference serves the processor"
+    head -n 1 fresh-cache/*.noise >numbers && for f in fresh-cache/*.noise; do cp numbers "$f"; done
+    run experiment one.json -o fresh2 --cache fresh-cache
+    test $status = 0 && told fresh2 embree embree 2>err; result $? "a reference without a device is embree's"
+else
+    skip "backends in rows" "no Vulkan device traces rays here"
+fi
 finish
