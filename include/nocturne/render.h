@@ -226,7 +226,8 @@ NOC_API size_t noc_devices(noc_device_info *devices, size_t capacity);
 typedef struct noc_device_params {
     int threads; /* of the processor; 0: one a core */
     noc_backend_id backend;
-    /* vulkan: a part of the device's name, case ignored, or its number; NULL: discrete GPUs first, software last */
+    /* vulkan: its number, its name, or a part that no other usable device has in its name, case ignored; NULL: discrete
+     * GPUs first, software last */
     const char *device;
 } noc_device_params;
 

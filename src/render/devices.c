@@ -79,17 +79,22 @@ const noc_device_info *noc_best_gpu(const noc_device_info *list, size_t count) {
     return found && found->kind > NOC_DEVICE_SOFTWARE ? found : NULL;
 }
 
-/* The device of this number, or the first whose name has this part, usable ones before others. NULL: none. */
-static const noc_device_info *named(const noc_device_info *list, size_t count, const char *wanted) {
+/* Returns the device of this number, of this name, or with this part in its name, usable ones before others. NULL:
+ * none. *several: more than one that is usable. Greater numbers than devices can have are parts of names: 3060. */
+static const noc_device_info *named(const noc_device_info *list, size_t count, const char *wanted, bool *several) {
     const noc_device_info *found = NULL;
     long long number = -1;
-    bool numbered = *wanted >= '0' && *wanted <= '9' && noc_parse_int(wanted, &number);
-    for (size_t i = 0; i < count; i++) {
-        if (numbered ? list[i].number != number : !strcasestr(list[i].name, wanted))
-            continue;
-        if (!found || (list[i].usable && !found->usable))
-            found = &list[i];
-    }
+    bool numbered = *wanted >= '0' && *wanted <= '9' && noc_parse_int(wanted, &number) && number < MOST_DEVICES;
+    *several = false;
+    for (int part = 0; part < 2 && !found; part++)
+        for (size_t i = 0; i < count; i++) {
+            const char *name = list[i].name;
+            if (numbered ? list[i].number != number : part ? !strcasestr(name, wanted) : strcasecmp(name, wanted))
+                continue;
+            *several |= found && found->usable && list[i].usable;
+            if (!found || (list[i].usable && !found->usable))
+                found = &list[i];
+        }
     return found;
 }
 
@@ -108,8 +113,14 @@ noc_status noc_choose_device(const noc_device_info *list, size_t count, const ch
     char text[600];
     if (list->number < 0)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: %s", backend, list->why);
-    const noc_device_info *found = wanted ? named(list, count, wanted) : best(list, count);
+    bool several = false;
+    if (wanted && !wanted[strspn(wanted, " ")])
+        return noc_error(log, NOC_ERR_ARGUMENT, "device: is empty; pass a number or a part of a name");
+    const noc_device_info *found = wanted ? named(list, count, wanted, &several) : best(list, count);
     list_names(list, count, text, sizeof(text));
+    if (several)
+        return noc_error(log, NOC_ERR_ARGUMENT, "device: \"%.60s\" is in several names, pass a number: %s", wanted,
+                         text);
     if (!found && wanted)
         return noc_error(log, NOC_ERR_ARGUMENT, "device: \"%.60s\" is neither number nor part of a name of %s", wanted,
                          text);

@@ -47,7 +47,9 @@ static void a_device_is_named(void **state) {
     assert_int_equal(choose(0, 5, "intel", NOC_OK, m), 2); /* not the one that is not usable */
     assert_int_equal(choose(0, 5, "1", NOC_OK, m), 1);     /* a number, though names hold it, too */
     assert_int_equal(choose(0, 5, "nvidia", NOC_OK, m), 3);
-    assert_int_equal(choose(0, 5, "1080", NOC_ERR_ARGUMENT, m), -1);
+    assert_int_equal(choose(0, 5, "3060", NOC_OK, m), 3);
+    assert_int_equal(choose(0, 5, "1080", NOC_ERR_UNSUPPORTED, m), -1);
+    assert_int_equal(choose(0, 5, "15", NOC_ERR_ARGUMENT, m), -1); /* a number that no device has, though LLVM 15 */
     assert_int_equal(choose(0, 5, "GTX 1080", NOC_ERR_UNSUPPORTED, m), -1);
     assert_string_equal(m, "vulkan: NVIDIA GeForce GTX 1080 is not usable: it lacks VK_KHR_ray_tracing_pipeline");
     assert_int_equal(choose(0, 5, "0", NOC_ERR_UNSUPPORTED, m), -1);
@@ -56,7 +58,30 @@ static void a_device_is_named(void **state) {
                            "bits)");
     assert_int_equal(choose(0, 5, "5", NOC_ERR_ARGUMENT, m), -1);
     assert_int_equal(choose(0, 5, "-1", NOC_ERR_ARGUMENT, m), -1);
-    assert_int_equal(choose(0, 5, "", NOC_OK, m), 1); /* a part of any name */
+    assert_int_equal(choose(0, 5, " ", NOC_ERR_ARGUMENT, m), -1); /* a part of nearly any name */
+    assert_int_equal(choose(0, 5, "", NOC_ERR_ARGUMENT, m), -1);
+    assert_string_equal(m, "device: is empty; pass a number or a part of a name");
+}
+
+static void a_name_of_several_is_refused(void **state) {
+    (void)state;
+    char m[700];
+    assert_int_equal(choose(0, 5, "a", NOC_ERR_ARGUMENT, m), -1);
+    assert_int_equal(choose(1, 3, "tm", NOC_OK, m), 2);
+    assert_int_equal(choose(1, 3, "e", NOC_ERR_ARGUMENT, m), -1);
+    assert_string_equal(m, "device: \"e\" is in several names, pass a number: 1 llvmpipe (LLVM 15.0.6, 256 bits), 2 "
+                           "Intel(R) Arc(tm) Graphics (MTL), 3 NVIDIA GeForce RTX 3060");
+    const noc_device_info twins[] = {
+        { NOC_BACKEND_VULKAN, 0, NOC_DEVICE_DISCRETE, "NVIDIA L4", "NVIDIA 550.54", true, "" },
+        { NOC_BACKEND_VULKAN, 1, NOC_DEVICE_DISCRETE, "NVIDIA L40", "NVIDIA 550.54", true, "" },
+        { NOC_BACKEND_VULKAN, 2, NOC_DEVICE_DISCRETE, "NVIDIA L40", "NVIDIA 550.54", true, "" },
+    };
+    noc_device_info info;
+    assert_int_equal(noc_choose_device(twins, 3, "nvidia l4", &info, NULL), NOC_OK); /* a whole name, though a part */
+    assert_int_equal(info.number, 0);
+    assert_int_equal(noc_choose_device(twins, 3, "L40", &info, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_choose_device(twins, 3, "2", &info, NULL), NOC_OK);
+    assert_int_equal(info.number, 2);
 }
 
 /* A driver that runs on the processor is no reason to leave Embree. */
@@ -139,10 +164,10 @@ static void names_are_those_of_options(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_best_device_is_taken),   cmocka_unit_test(a_device_is_named),
-        cmocka_unit_test(auto_wants_a_gpu),           cmocka_unit_test(a_backend_without_devices_says_why),
-        cmocka_unit_test(devices_are_listed),         cmocka_unit_test(the_device_is_the_one_found),
-        cmocka_unit_test(names_are_those_of_options),
+        cmocka_unit_test(the_best_device_is_taken),           cmocka_unit_test(a_device_is_named),
+        cmocka_unit_test(a_name_of_several_is_refused),       cmocka_unit_test(auto_wants_a_gpu),
+        cmocka_unit_test(a_backend_without_devices_says_why), cmocka_unit_test(devices_are_listed),
+        cmocka_unit_test(the_device_is_the_one_found),        cmocka_unit_test(names_are_those_of_options),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
