@@ -144,6 +144,7 @@ typedef struct noc_lab_spec_info {
     int width, height; /* of the pictures */
     int repetitions;
     size_t scenes, cameras, configurations;
+    noc_device_params device; /* that the spec names; backend auto, threads 0 and NULL where it does not */
 } noc_lab_spec_info;
 typedef struct noc_lab_camera_info {
     const char *name, *scene; /* each camera is of one scene */
@@ -182,7 +183,7 @@ typedef struct noc_lab_progress {
 typedef struct noc_lab_params {
     const char *folder;       /* that all is written to, made where it is missing; needed */
     const char *cache;        /* that references are kept in; NULL: nocturne in the user's cache folder */
-    noc_device_params device; /* its device text must outlive the lab */
+    noc_device_params device; /* whatever the spec names; its device text must outlive the lab */
     /* May be NULL. Called from the thread that works; return false to end the work, which can be gone on with. */
     bool (*progress)(void *user, const noc_lab_progress *progress);
     /* A line about what goes on, such as that a reference is made and how long it will take; may be NULL. */

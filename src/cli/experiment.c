@@ -100,6 +100,21 @@ static int work(const experiment_args *args, noc_lab *lab) {
     return status ? CLI_FAILURE : CLI_OK;
 }
 
+/* The command line says what renders, else the spec. A spec's device is none of a backend that the command line names.
+ */
+static int take_device(experiment_args *args, const noc_lab_spec *spec) {
+    noc_lab_spec_info info;
+    noc_lab_spec_get_info(spec, &info);
+    bool named = cli_given(&args->common, "backend") || cli_given(&args->common, "device");
+    if (!cli_given(&args->common, "threads"))
+        args->device.threads = info.device.threads;
+    if (named)
+        return CLI_OK;
+    args->device.backend = info.device.backend;
+    args->device.device = info.device.device;
+    return cli_check_device(&cli_experiment, &args->device);
+}
+
 static int run_spec(const experiment_args *args, const noc_lab_spec *spec, noc_log *log) {
     char *folder = output_folder(args, spec);
     noc_lab_params params = { .folder = folder,
@@ -124,8 +139,8 @@ static int run(void *arguments) {
     noc_log *log = cli_log_create(&args->common);
     noc_lab_spec *spec;
     noc_status read = noc_lab_spec_read(args->common.inputs[0], &spec, log);
-    status = read == NOC_ERR_FORMAT ? cli_read_on(&cli_experiment) : CLI_FAILURE;
-    if (!read) {
+    status = read == NOC_ERR_FORMAT ? cli_read_on(&cli_experiment) : read ? CLI_FAILURE : take_device(args, spec);
+    if (!read && !status) {
         cli_catch_signals();
         cli_progress_start(args->common.quiet);
         status = run_spec(args, spec, log);

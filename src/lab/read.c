@@ -38,7 +38,9 @@ static const noc_option *reference_table(void) { return reference_rows; }
 /* What the spec says once for all pictures. */
 static const char *const by_spec[] = { "width", "height", "accumulate", NULL };
 
-static const lab_options spec_options[] = { { spec_table, 0, NULL }, { NULL } };
+static const lab_options spec_options[] = { { spec_table, 0, NULL },
+                                            { noc_device_options, offsetof(S, device), NULL },
+                                            { NULL } };
 static const lab_options reference_options[] = { { reference_table, 0, NULL },
                                                  { noc_render_options, offsetof(S, reference.params), by_spec },
                                                  { NULL } };
@@ -437,6 +439,7 @@ static noc_status read_text(const char *text, size_t size, const char *path, noc
                  .size = "480x270",
                  .frames = 20,
                  .repetitions = LAB_REPETITIONS,
+                 .device.backend = NOC_BACKEND_AUTO,
                  .accumulate = LAB_MODES,
                  .seed = 1,
                  .ceiling = 10,

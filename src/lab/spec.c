@@ -28,8 +28,9 @@ void noc_lab_spec_get_info(const noc_lab_spec *spec, noc_lab_spec_info *info) {
         return;
     *info = (noc_lab_spec_info){ .name = "", .title = "" };
     if (spec)
-        *info = (noc_lab_spec_info){ spec->name,        spec->title,       spec->width,        spec->height,
-                                     spec->repetitions, spec->scene_count, spec->camera_count, spec->config_count };
+        *info = (noc_lab_spec_info){ spec->name,         spec->title,        spec->width,
+                                     spec->height,       spec->repetitions,  spec->scene_count,
+                                     spec->camera_count, spec->config_count, spec->device };
 }
 
 noc_status noc_lab_spec_get_camera(const noc_lab_spec *spec, size_t index, noc_lab_camera_info *info) {

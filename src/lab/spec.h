@@ -95,6 +95,7 @@ typedef struct noc_lab_spec {
     bool light_view; /* the shown frames' lights (NOC_AOV_LIGHT) are shown, too */
     int accumulate;
     uint32_t seed; /* of the first repetition */
+    noc_device_params device;
     int figure;
     bool all_pixels; /* figures of plots and of time to error: all pixels, else those that see no emitter */
     double ceiling;

@@ -60,6 +60,9 @@ noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const ch
 }
 
 static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
+    if (find_in(noc_device_options(), recipe_text(key)))
+        return recipe_wrong(t->file, key, "%s is the machine's and not a city's: pass --%s to the command",
+                            recipe_text(key), recipe_text(key));
     static const char *const others[] = { "nocturne",          "name",    "inputs", "preset",     "materials",
                                           "materials-by-name", "cameras", "paths",  "luminaires", "groups" };
     const char *words[256];

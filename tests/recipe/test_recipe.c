@@ -260,6 +260,7 @@ static const struct {
     { "nocturne: 1\ninputs: [a, [b]]\n", 2, "inputs: entry 2 is no text" },
     { "nocturne: 1\ninputs: [a, '']\n", 2, "inputs: entry 2 is no text" },
     { HEAD "windows: {sky: 3}\n", 3, "no key sky in windows" },
+    { HEAD "backend: vulkan\n", 3, "backend is the machine's and not a city's: pass --backend to the command" },
     { HEAD "windows: [1]\n", 3, "windows must be keys" },
     { HEAD "windows: maybe\n", 3, "neither true nor false" },
     { HEAD "lamps: off\n", 3, "lamps must be keys" },
