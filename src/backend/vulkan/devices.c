@@ -11,8 +11,9 @@ const char *const noc_vk_extensions[VK_EXTENSIONS] = {
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
 };
 
-/* Of volk's functions, which are the process's. */
+/* Of volk's functions, which are the process's, and of: */
 static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER;
+static VkInstance kept; /* never destroyed: drivers stay loaded, and NVIDIA's fails to load after some sixty times */
 
 static const char *load_instance(const VkInstanceCreateInfo *info, VkInstance *instance) {
     if (volkInitialize() != VK_SUCCESS)
@@ -20,7 +21,7 @@ static const char *load_instance(const VkInstanceCreateInfo *info, VkInstance *i
     if (volkGetInstanceVersion() < VK_API_VERSION_1_2)
         return "the Vulkan loader is older than 1.2";
     switch (vkCreateInstance(info, NULL, instance)) {
-    case VK_SUCCESS: volkLoadInstance(*instance); return NULL;
+    case VK_SUCCESS: volkLoadInstance(*instance); break;
     case VK_ERROR_INCOMPATIBLE_DRIVER:
         return "no Vulkan driver on this machine (of NVIDIA, or Debian's mesa-vulkan-drivers)";
     case VK_ERROR_OUT_OF_HOST_MEMORY: /* the loader's answer to a manifest that is no JSON, too */
@@ -28,6 +29,10 @@ static const char *load_instance(const VkInstanceCreateInfo *info, VkInstance *i
     case VK_ERROR_LAYER_NOT_PRESENT: return "no validation layer on this machine";
     default: return "the Vulkan loader makes no instance";
     }
+    const VkInstanceCreateInfo plain = { .sType = info->sType, .pApplicationInfo = info->pApplicationInfo };
+    if (!kept && vkCreateInstance(&plain, NULL, &kept) != VK_SUCCESS)
+        kept = VK_NULL_HANDLE;
+    return NULL;
 }
 
 const char *noc_vk_make_instance(const VkDebugUtilsMessengerCreateInfoEXT *messages, VkInstance *instance) {
