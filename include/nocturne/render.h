@@ -348,11 +348,14 @@ typedef struct noc_frame_stats {
     uint64_t rays_primary, rays_shadow;  /* of the last frame */
     uint64_t dropped;                    /* samples dropped for being NaN or infinite, since the last reset */
     double build_seconds;                /* of the ray tracing structure */
-    size_t memory_bytes;                 /* of the view and of what it shares, without the scene */
-    size_t picture_bytes;                /* of these: what each pixel takes, in the view's buffers and views (aovs) */
-    size_t structure_bytes;              /* of these: the ray tracing structure */
-    size_t learned_bytes;                /* of these: what the view has learned of the lights' visibility */
-    const char *path;                    /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
+    /* shaders that were compiled for the device, by the clock and on the processor; the frames that first needed them
+     * waited, and have that in their seconds */
+    double compile_seconds, compile_cpu_seconds;
+    size_t memory_bytes;    /* of the view and of what it shares, without the scene */
+    size_t picture_bytes;   /* of these: what each pixel takes, in the view's buffers and views (aovs) */
+    size_t structure_bytes; /* of these: the ray tracing structure */
+    size_t learned_bytes;   /* of these: what the view has learned of the lights' visibility */
+    const char *path;       /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
 /* Waits for the last frame where it is still being made (Vulkan has two in flight); else figures are those of the last

@@ -399,6 +399,11 @@ static void print_map(const render_job *job) {
         puts("as background alone: --environment-light lights the city by it");
 }
 
+/* Seconds of a frame, without those that some waited for shaders to be compiled. */
+static double frame_mean(const render_job *job) {
+    return fmax(job->frame_seconds - job->last.compile_seconds, 0) / job->frames;
+}
+
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
@@ -439,8 +444,9 @@ void cli_print_summary(const render_job *job) {
     printf("  time      %s: loading %s, ", noc_text_seconds(a, cli_now() - job->started),
            noc_text_seconds(b, job->loaded - job->started));
     printf("ray tracing structure %s, ", noc_text_seconds(a, job->last.build_seconds));
-    printf("%s a frame (%s)\n", noc_text_seconds(a, job->frame_seconds / job->frames),
-           job->last.path ? job->last.path : "");
+    if (job->last.compile_seconds > 0)
+        printf("shaders %s, ", noc_text_seconds(a, job->last.compile_seconds));
+    printf("%s a frame (%s)\n", noc_text_seconds(a, frame_mean(job)), job->last.path ? job->last.path : "");
     printf("  memory    %s at most, of this process\n", noc_text_bytes(a, cli_peak_memory()));
     if (job->last.dropped)
         printf("  dropped   %s, not finite\n", noc_text_many(a, job->last.dropped, "sample"));
@@ -456,10 +462,10 @@ void cli_print_stats(const render_job *job) {
         if (job->pass_seconds[i] > 0)
             printf("  %-20s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,
                    sum > 0 ? 100 * job->pass_seconds[i] / sum : 0);
-    double frame = job->frame_seconds / job->frames;
+    double frame = frame_mean(job);
     char a[32], b[32];
     printf("  %-20s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame,
-           1e3 * job->cpu_seconds / job->frames);
+           1e3 * fmax(job->cpu_seconds - job->last.compile_cpu_seconds, 0) / job->frames);
     printf("  %-20s %s primary, %s shadow (last frame)\n", "rays", noc_text_count(a, job->last.rays_primary),
            noc_text_count(b, job->last.rays_shadow));
     if (job->floor.wall_seconds > 0)

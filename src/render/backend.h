@@ -91,7 +91,8 @@ typedef struct noc_backend {
     void (*rows)(void *view, const frame_camera *camera, const noc_frame_rows *rows); /* camera: of that frame */
     /* Calls fn for each item by the device's threads, as noc_pool_run does. */
     void (*run)(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
-    /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
+    /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory,
+     * path and, where shaders are compiled, what that took. */
     void (*stats)(void *view, noc_frame_stats *stats);
     /* Waits until the last frame is finished; returns true if it was not yet. NULL: frames are when they return. */
     bool (*finish)(void *view);

@@ -519,6 +519,8 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->dropped += v->stats.dropped;
     v->stats.dropped = 0;
     out->build_seconds = v->world->build_seconds;
+    out->compile_seconds = d->compile_seconds;
+    out->compile_cpu_seconds = d->compile_cpu_seconds;
     out->picture_bytes = v->b.bytes + (size_t)v->b.blocks_x * v->b.blocks_y * BLOCK *
                                           noc_vk_views_bytes(v->views.of.asked | v->views.of.held);
     out->structure_bytes = noc_vk_structure_bytes(v->world);

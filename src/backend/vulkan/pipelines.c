@@ -156,7 +156,7 @@ void noc_vk_pipelines_destroy(vk_device *d) {
         if (d->pipelines[i].pipeline)
             vkDestroyPipeline(d->device, d->pipelines[i].pipeline, NULL);
     if (d->cache) {
-        if (d->pipeline_seconds > 0 && !d->lost)
+        if (d->compile_seconds > 0 && !d->lost)
             write_cache(d);
         vkDestroyPipelineCache(d->device, d->cache, NULL);
     }
@@ -260,12 +260,13 @@ noc_status noc_vk_pipeline(vk_device *d, vk_shader shader, const vk_pipeline **p
     *pipeline = p;
     if (p->pipeline)
         return NOC_OK;
-    double start = noc_wall_seconds();
+    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
     const struct shader_code *code = &codes[shader];
     VkResult result = code->traces ? make_trace(d, code, &p->pipeline) : make_compute(d, code, &p->pipeline);
     if (result == VK_SUCCESS && code->traces)
         result = fill_table(d, shader, p);
-    d->pipeline_seconds += noc_wall_seconds() - start;
+    d->compile_seconds += noc_wall_seconds() - wall;
+    d->compile_cpu_seconds += noc_cpu_seconds() - cpu;
     if (result == VK_SUCCESS)
         return NOC_OK;
     char text[64];

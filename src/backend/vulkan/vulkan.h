@@ -82,7 +82,7 @@ typedef struct vk_device {
     VkPipelineCache cache;
     vk_pipeline pipelines[VK_SHADER_COUNT];
     vk_buffer table; /* shader binding table, of all ray tracing pipelines */
-    double pipeline_seconds;
+    double compile_seconds, compile_cpu_seconds; /* of all pipelines so far */
     uint32_t
         workers[2];    /* invocations of a work group: of a tile's list, of the choice of rays; set before pipelines */
     size_t list_bytes; /* vk_facts */
