@@ -122,8 +122,8 @@ static void open_with(const noc_scene *scene, sizes size, twins *t) {
     open_twins(scene, true, messages, t);
     vk_device *d = gpu_of(t)->device;
     if (size.list) {
-        d->workers[0] = size.list;
-        d->workers[1] = size.share;
+        d->constants.list_workers = size.list;
+        d->constants.share_workers = size.share;
     }
     if (size.bytes)
         d->list_bytes = size.bytes;

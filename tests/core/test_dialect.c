@@ -382,8 +382,8 @@ static void expect_close(const char *what, const uint32_t *have, const uint32_t 
 static const struct {
     const uint32_t *spirv;
     size_t bytes;
-} parts[] = { PART(dialect_lights_spv), PART(dialect_reservoirs_spv), PART(dialect_frames_spv),
-              PART(dialect_draws_spv),  PART(dialect_tile_spv),       PART(dialect_tile_lists_spv) };
+} parts[] = { PART(dialect_lights), PART(dialect_reservoirs), PART(dialect_frames),
+              PART(dialect_draws),  PART(dialect_tile),       PART(dialect_tile_lists) };
 
 /* Each writes its slots and keeps the others. */
 static bool dialect_shader(vulkan_run *gpu, const uint32_t *spirv, size_t bytes, uint32_t *have) {

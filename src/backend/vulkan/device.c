@@ -83,6 +83,17 @@ static noc_status make_instance(vk_device *d, bool validate) {
 
 /* ---- the device ---- */
 
+/* Returns true if quotients and roots are to be the device's, whether or not it rounds them as the CPU does. */
+static bool asks_for_speed(noc_log *log) {
+    const char *rounding = getenv("NOCTURNE_VULKAN_ROUNDING");
+    if (!rounding || !strcmp(rounding, "ieee"))
+        return false;
+    if (!strcmp(rounding, "device"))
+        return true;
+    noc_warn(log, "NOCTURNE_VULKAN_ROUNDING: \"%s\" is neither ieee nor device; ieee is taken", rounding);
+    return false;
+}
+
 static void describe(vk_device *d) {
     uint32_t bits = 0;
     d->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
@@ -94,6 +105,7 @@ static void describe(vk_device *d) {
     vkGetPhysicalDeviceMemoryProperties(d->physical, &d->memory);
     d->family = noc_vk_compute_family(d->physical, &bits);
     d->software = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    d->constants.rounds = d->software || asks_for_speed(d->log);
     d->tick = p.properties.limits.timestampPeriod * 1e-9;
     d->tick_mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     memcpy(d->name, p.properties.deviceName, sizeof(d->name));
@@ -155,8 +167,7 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
         return noc_no_memory(log, "device");
     d->log = log;
     d->params = *params;
-    d->workers[0] = 256;
-    d->workers[1] = 64;
+    d->constants = (vk_constants){ .list_workers = 256, .share_workers = 64 };
     d->list_bytes = (size_t)256 << 20;
     pthread_mutex_init(&d->lock, NULL);
     pthread_mutex_init(&d->host_lock, NULL);

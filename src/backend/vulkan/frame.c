@@ -196,7 +196,7 @@ static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
         break;
     case VK_DOMAIN_TILES: vkCmdDispatch(commands, noc_vk_tiles(b->blocks_x), noc_vk_tiles(rows), 1); break;
     case VK_DOMAIN_BLOCKS: {
-        uint32_t blocks = v->device->workers[1] / BLOCK;
+        uint32_t blocks = v->device->constants.share_workers / BLOCK;
         vkCmdDispatch(commands, (b->blocks_x + blocks - 1) / blocks, rows, 1);
         break;
     }

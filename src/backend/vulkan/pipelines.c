@@ -187,13 +187,14 @@ static VkResult make_compute(vk_device *d, const struct shader_code *code, VkPip
     VkResult result = make_module(d, &code->first, &m);
     if (result != VK_SUCCESS)
         return result;
-    /* sizes of work groups, of the shaders that have them as constants */
-    const VkSpecializationMapEntry constants[] = { { 0, 0, 4 }, { 1, 4, 4 } };
-    const VkSpecializationInfo sizes = { NOC_COUNT(constants), constants, sizeof(d->workers), d->workers };
+    const VkSpecializationMapEntry entries[] = { { 0, offsetof(vk_constants, list_workers), 4 },
+                                                 { 1, offsetof(vk_constants, share_workers), 4 },
+                                                 { 2, offsetof(vk_constants, rounds), 4 } };
+    const VkSpecializationInfo constants = { NOC_COUNT(entries), entries, sizeof(d->constants), &d->constants };
     VkComputePipelineCreateInfo info = { .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                          .stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, m),
                                          .layout = d->layout };
-    info.stage.pSpecializationInfo = &sizes;
+    info.stage.pSpecializationInfo = &constants;
     result = vkCreateComputePipelines(d->device, d->cache, 1, &info, NULL, out);
     vkDestroyShaderModule(d->device, m, NULL);
     return result;

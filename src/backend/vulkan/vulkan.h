@@ -54,6 +54,12 @@ typedef struct vk_pipeline {
     VkStridedDeviceAddressRegionKHR raygen, miss, hit;
 } vk_pipeline;
 
+/* Specialization constants of all compute shaders, by their numbers; set before pipelines are made. */
+typedef struct vk_constants {
+    uint32_t list_workers, share_workers; /* invocations of a work group: of a tile's list, of the choice of rays */
+    VkBool32 rounds; /* quotients and roots are the device's own: it rounds them as IEEE 754 does */
+} vk_constants;
+
 typedef struct vk_device {
     noc_log *log;
     noc_pool *pool;
@@ -81,10 +87,9 @@ typedef struct vk_device {
     VkPipelineLayout layout;
     VkPipelineCache cache;
     vk_pipeline pipelines[VK_SHADER_COUNT];
-    vk_buffer table; /* shader binding table, of all ray tracing pipelines */
+    vk_buffer table;                             /* shader binding table, of all ray tracing pipelines */
     double compile_seconds, compile_cpu_seconds; /* of all pipelines so far */
-    uint32_t
-        workers[2];    /* invocations of a work group: of a tile's list, of the choice of rays; set before pipelines */
+    vk_constants constants;
     size_t list_bytes; /* vk_facts */
     size_t bytes;      /* allocated */
     noc_device_params params;
