@@ -79,6 +79,8 @@ NOC_API void noc_log_destroy(noc_log *log); /* NULL is allowed */
  * callback cancelled leaves one too, though its message is of level NOC_LOG_INFO. Not for use while other threads log.
  */
 NOC_API const char *noc_log_last_error(const noc_log *log);
+/* Copies that text, cut to size bytes with its end; other threads may log meanwhile. */
+NOC_API void noc_log_copy_error(noc_log *log, char *text, size_t size);
 NOC_API const char *noc_status_text(noc_status status);
 
 /* Progress of long work. done runs from 0 to 1; return false to cancel. Called from the thread that started the work.

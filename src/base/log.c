@@ -27,6 +27,16 @@ void noc_log_destroy(noc_log *log) {
 
 const char *noc_log_last_error(const noc_log *log) { return log ? log->last_error : ""; }
 
+void noc_log_copy_error(noc_log *log, char *text, size_t size) {
+    if (text && size)
+        *text = 0;
+    if (!log || !text || !size)
+        return;
+    pthread_mutex_lock(&log->lock);
+    noc_snprintf(text, size, "%s", log->last_error);
+    pthread_mutex_unlock(&log->lock);
+}
+
 noc_status noc_log_last_status(const noc_log *log) { return log && log->last_status ? log->last_status : NOC_ERR_IO; }
 
 const char *noc_status_text(noc_status status) {

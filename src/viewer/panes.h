@@ -15,6 +15,7 @@ typedef struct pane {
     noc_smoother *smoother; /* of moving pictures; NULL until there was one */
     const noc_image *calm;  /* its picture of the last frame; NULL: that is shown as it is */
     bool varies;            /* that kept its variance */
+    bool failed;            /* its last frame: there is none until something changes */
     uint64_t shown;         /* the change (panes.change) that its newest frame shows; 0: none */
     uint32_t number;        /* of its newest picture */
     noc_frame_stats stats;

@@ -84,22 +84,16 @@ void session_tell_welcome(session *s) {
 
 double session_aspect(const session *s) { return s->width && s->height ? (double)s->width / s->height : 16.0 / 9; }
 
-static void changed(session *s) {
-    s->panes.change++;
-    s->moved = session_now();
-    s->rested = false;
-}
-
 static void do_input(session *s, const wire_input *input) {
     s->input = input->n;
     mover_input(&s->mover, input, session_aspect(s), session_now());
-    changed(s);
+    session_changed(s);
 }
 
 static void told(session *s, bool done, const char *why) {
     if (!done)
         session_note(s, "error", why);
-    changed(s);
+    session_changed(s);
     s->told_less = true;
 }
 
@@ -126,9 +120,9 @@ static void do_set(session *s, const wire_message *m) {
     if (!panes_set(&s->panes, m->set.pane, m->set.name, m->set.value, &need, why, sizeof(why)))
         session_note(s, "error", why);
     if (need == PANES_ANEW)
-        changed(s);
+        session_changed(s);
     s->redraw = s->redraw > (int)need + 1 ? s->redraw : (int)need + 1;
-    s->rested = false;
+    session_wake(s);
     s->told_less = true;
 }
 
@@ -152,7 +146,7 @@ void session_do(session *s, const wire_message *m) {
         s->width = m->hello.width;
         s->height = m->hello.height;
         s->told_less = true; /* the command line has the size */
-        changed(s);
+        session_changed(s);
         break;
     case WIRE_INPUT: do_input(s, &m->input); break;
     case WIRE_NAVIGATE:

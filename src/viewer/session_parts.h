@@ -53,6 +53,10 @@ void session_tell_welcome(session *s);
 void session_tell_state(session *s);
 /* Sees to it that a pane has a frame of its whole size, for its file. false: it was broken off. */
 bool session_complete(session *s, int which);
+/* Something has changed: panes have frames to render, those whose last one failed, too. */
+void session_wake(session *s);
+/* What pictures show has changed. */
+void session_changed(session *s);
 /* Does what is to be done next; seconds to wait until there is more to do, 0: at once. */
 double session_step(session *s);
 

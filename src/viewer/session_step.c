@@ -31,7 +31,19 @@ static void full_size(const session *s, int *w, int *h) {
     *h = (int)fmax(1, floor(s->height * scale));
 }
 
-/* One frame of a pane at that level. false: it was dropped. */
+void session_wake(session *s) {
+    s->rested = false;
+    for (int i = 0; i < s->panes.count; i++)
+        s->panes.pane[i].failed = false;
+}
+
+void session_changed(session *s) {
+    s->panes.change++;
+    s->moved = session_now();
+    session_wake(s);
+}
+
+/* One frame of a pane at that level. false: it was dropped, or failed, which is told. */
 static bool render(session *s, int which, int level, bool rests) {
     int w, h;
     full_size(s, &w, &h);
@@ -39,8 +51,10 @@ static bool render(session *s, int which, int level, bool rests) {
     noc_progress progress = { rests ? goes_on : goes_on_moving, s };
     noc_status status = panes_render(&s->panes, which, &s->mover.camera, w, h, rests, &progress);
     if (status && status != NOC_ERR_CANCELLED) {
-        session_note(s, "error", noc_status_text(status));
-        s->rested = true; /* until something changes: the next one would fail, too */
+        char why[300];
+        noc_log_copy_error(s->panes.log, why, sizeof(why));
+        session_note(s, "error", *why ? why : noc_status_text(status));
+        s->panes.pane[which].failed = true; /* until something changes: the next one would fail, too */
     }
     return !status;
 }
@@ -86,6 +100,12 @@ static void show_headlight(session *s) {
     s->panes.exposure = exposure; /* it has one of its own */
 }
 
+/* Returns true if the pane has no picture until something changes; a difference has none without those it is of. */
+static bool has_failed(const session *s, int which) {
+    const pane *p = s->panes.pane;
+    return p[which].failed || (!p[which].view && (p[0].failed || p[1].failed));
+}
+
 /* While it moves: each pane that does not show the newest yet, at the resolution that the time allows. */
 static double step_moving(session *s) {
     double spent = 0, now = session_now();
@@ -96,11 +116,14 @@ static double step_moving(session *s) {
     s->resting = s->pace.level;
     for (int i = 0; i < s->panes.count; i++) {
         pane *p = &s->panes.pane[i];
-        if (p->shown == s->panes.change || !panes_watched(&s->panes, i, now))
+        if (p->shown == s->panes.change || has_failed(s, i) || !panes_watched(&s->panes, i, now))
             continue;
         double start = session_now();
-        if (p->view && !render(s, i, s->pace.level, false))
+        if (p->view && !render(s, i, s->pace.level, false)) {
+            if (p->failed)
+                continue;
             return 0;
+        }
         p->shown = s->panes.change;
         publish(s, i, true, false);
         atomic_store(s->setup->lit, true);
@@ -130,9 +153,14 @@ static double step_resting(session *s) {
         if (!panes_watched(&s->panes, i, now))
             continue;
         any = true;
+        if (has_failed(s, i))
+            continue;
         bool full = !first && !s->resting, as_it_is = s->redraw == 1 + PANES_PUBLISH && p->shown;
-        if (p->view && !as_it_is && (s->redraw || !(full && is_done(s, i))) && !render(s, i, s->resting, true))
+        if (p->view && !as_it_is && (s->redraw || !(full && is_done(s, i))) && !render(s, i, s->resting, true)) {
+            if (p->failed)
+                continue;
             return 0;
+        }
         bool done = p->view ? full && is_done(s, i) : all_done;
         all_done = all_done && done;
         now = session_now();
@@ -159,14 +187,10 @@ double session_step(session *s) {
     uint64_t version = world_version(s->setup->world);
     if (version != s->version) {
         s->version = version;
-        s->panes.change++;
-        s->moved = session_now();
-        s->rested = false;
+        session_changed(s);
     }
     if (mover_advance(&s->mover, session_aspect(s), session_now())) {
-        s->panes.change++;
-        s->moved = session_now();
-        s->rested = false;
+        session_changed(s);
         s->travels = true;
     } else if (s->travels) {
         s->travels = false;

@@ -285,6 +285,11 @@ static void log_reports_once(void **state) {
     assert_int_equal(noc_error(log, NOC_ERR_FORMAT, "%s:%d: bad\x1b[31m", "a.gml", 3), NOC_ERR_FORMAT);
     assert_string_equal(text, "a.gml:3: bad [31m");
     assert_string_equal(noc_log_last_error(log), text);
+    char copy[6];
+    noc_log_copy_error(log, copy, sizeof(copy));
+    assert_string_equal(copy, "a.gml");
+    noc_log_copy_error(NULL, copy, sizeof(copy));
+    assert_string_equal(copy, "");
     noc_info(log, "dropped");
     assert_int_equal(messages, 1);
     noc_log_destroy(log);

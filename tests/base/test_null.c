@@ -58,6 +58,7 @@ static noc_camera camera;
     P(0, noc_channel_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
     P(0, noc_channel_write(channel, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
     P(noc_log_destroy(NULL), noc_log_last_error(NULL)[0] == 0)                                                         \
+    P(noc_log_copy_error(NULL, NULL, 0), true)                                                                         \
     P(noc_scene_destroy(NULL), true)                                                                                   \
     P(0, noc_scene_add_material(NULL, &(noc_material){ .roughness = 1 }) == -1)                                        \
     P(0, noc_scene_add_material(scene, NULL) == -1)                                                                    \
