@@ -95,14 +95,34 @@ void lab_name_device(const lab_session *lab, char text[LAB_DEVICE]) {
                  d->driver);
 }
 
+/* Settings of the environment that change times, or bits of pictures: ", NOCTURNE_ISA=scalar". */
+static void name_settings(noc_backend_id backend, char *text, size_t size) {
+    static const struct {
+        noc_backend_id backend;
+        const char *name;
+    } settings[] = { { NOC_BACKEND_EMBREE, "NOCTURNE_ISA" },
+                     { NOC_BACKEND_VULKAN, "NOCTURNE_VULKAN_ROUNDING" },
+                     { NOC_BACKEND_VULKAN, "NOCTURNE_VULKAN_VALIDATION" } };
+    size_t at = 0;
+    *text = 0;
+    for (size_t i = 0; i < NOC_COUNT(settings); i++) {
+        const char *value = getenv(settings[i].name);
+        char clean[41];
+        if (settings[i].backend == backend && value && at < size)
+            at += (size_t)noc_snprintf(text + at, size - at, ", %s=%s", settings[i].name,
+                                       noc_text_clean(clean, sizeof(clean), value));
+    }
+}
+
 void lab_name_machine(lab_session *lab) {
-    char model[121], device[LAB_DEVICE];
+    char model[121], device[LAB_DEVICE], settings[200];
     noc_processor_name(model, sizeof(model));
     struct utsname name = { .sysname = "" };
     uname(&name);
     lab_name_device(lab, device);
-    noc_snprintf(lab->machine, sizeof(lab->machine), "%s, %ld processors, %.20s %.40s; rendered by %s", model,
-                 sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine, device);
+    name_settings(lab->device.backend, settings, sizeof(settings));
+    noc_snprintf(lab->machine, sizeof(lab->machine), "%s, %ld processors, %.20s %.40s; rendered by %s%s", model,
+                 sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine, device, settings);
     name_build(lab);
 }
 

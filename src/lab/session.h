@@ -121,7 +121,7 @@ typedef struct noc_lab {
     bool finished;                  /* the last run came to its end */
     char path[32];                  /* code that ran: "avx2 x8" */
     noc_device_info device;         /* that renders */
-    char machine[LAB_DEVICE + 256]; /* with the device */
+    char machine[LAB_DEVICE + 456]; /* with the device */
     char build[LAB_KEY];
     double *sum;    /* room for the mean of a picture */
     double *values; /* for a median: one a frame and repetition; while a report is written */

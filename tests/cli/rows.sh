@@ -93,6 +93,9 @@ told other embree embree 2>err; result $? "rows and report name backend, device 
 sed 's/"shown": \[\]/"shown": [1]/' one.json >shown.json
 run experiment shown.json -o both --cache cache
 test $status = 0 && grep -aq embree both/pictures/*.exr; result $? "and so do pictures"
+NOCTURNE_ISA=scalar run experiment one.json -o other --cache cache
+test $status = 0 && grep -q ', 2 of them made now' out && grep -q 'rendered by embree, .*, NOCTURNE_ISA=scalar' \
+    other/report.md; result $? "nor are rows of another instruction set" "$(cat out)"
 if "$program" --version | grep '^ *vulkan [0-9]' | grep -qv 'not usable'; then
     cp both/results.csv both.csv
     run experiment shown.json -o both --cache cache --backend vulkan
