@@ -70,6 +70,14 @@ static json_t *scene_of(const session *s) {
     return m;
 }
 
+/* "vulkan, NVIDIA GeForce RTX 3060" */
+static json_t *device_of(const session *s) {
+    const noc_device_info *device = noc_device_get_info(world_device(s->setup->world));
+    char text[300];
+    snprintf(text, sizeof(text), "%s, %s", noc_backend_name(device->backend), device->name);
+    return wire_text(text);
+}
+
 void session_tell_welcome(session *s) {
     json_t *m = wire_begin("welcome"), *schema = json_object();
     json_object_set_new(schema, "look", look_schema(&s->panes.pane[0].look));
@@ -78,6 +86,7 @@ void session_tell_welcome(session *s) {
     json_object_set_new(m, "schema", schema);
     json_object_set_new(m, "cameras", cameras(s));
     json_object_set_new(m, "scene", scene_of(s));
+    json_object_set_new(m, "device", device_of(s));
     json_object_set_new(m, "state", state_of(s, json_object()));
     outbox_text(s->box, OUTBOX_WELCOME, 0, wire_end(m));
 }

@@ -13,6 +13,7 @@ from wire import Picture, Program
 
 def test_rest_motion_and_numbers(p):
     c = enter(p, 64, 36)
+    assert c.welcome["device"].startswith("vulkan, "), c.welcome["device"]
     c.say("set", name="frames", value="2")
     rest = c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 2)
     assert (rest.width, rest.height) == (64, 36) and not rest.moving

@@ -34,7 +34,10 @@ export class Status {
         app.connection.on('t:loading', (message) => this.#load(message));
         app.connection.on('open', () => this.#wait('Connected', 0));
         app.connection.on('closed', (seconds) => this.#closed(seconds));
-        app.on('welcome', () => this.#wait('Drawing the first picture', 0));
+        app.on('welcome', ({ device }) => {
+            this.parts.rays.title = `rays a second, by ${device}`;
+            this.#wait('Drawing the first picture', 0);
+        });
         setInterval(() => this.#tick(), 500);
         this.#wait('Connecting', 0);
     }
