@@ -11,12 +11,13 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 SOURCE = re.compile(r"(src|include)/.*\.(c|h|glsl|comp|rgen|rmiss|rchit)$")
 # What is a machine's own, by the name of a file without _tmpl: rays and their structure, memory, lanes, how tiles are
 # walked, and the tables and records that connect those.
-MACHINE = set("""backend.c backend.h blocks.h cpu.h device.c embree.c embree.h frame.c kernel_tables.c kernels.h lanes.h
-    lights.c many.c moved.c rays.c room.c rt.h scratch.c structure.c tracer.h view.c parts.c parts.h host.c memory.c
-    pipelines.c readback.c records.h schedule.c schedule.h shaders.h floor.c volk.c vulkan.h world.c bridge.glsl
-    payload.glsl pixel.glsl trace.glsl trace_closest.rchit trace_closest.rgen trace_closest.rmiss trace_occlusion.rchit
-    trace_occlusion.rgen trace_occlusion.rmiss lists.c list_memory.h list_group.glsl list_tile.glsl
-    list_pixel.glsl list_bridge.h learning.c""".split())
+MACHINE = set("""backend.c backend.h blocks.h cpu.h device.c devices.c embree.c embree.h frame.c kernel_tables.c
+    kernels.h lanes.h lights.c many.c moved.c rays.c room.c rt.h scratch.c structure.c tracer.h view.c
+    parts.c parts.h host.c memory.c pipelines.c readback.c records.h schedule.c schedule.h shaders.h
+    floor.c volk.c vulkan.h world.c bridge.glsl payload.glsl pixel.glsl trace.glsl trace_closest.rchit
+    trace_closest.rgen trace_closest.rmiss trace_occlusion.rchit trace_occlusion.rgen
+    trace_occlusion.rmiss lists.c list_memory.h list_group.glsl list_tile.glsl list_pixel.glsl
+    list_bridge.h learning.c""".split())
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
 
 

@@ -1,5 +1,5 @@
 /* One source, three readers: every function of src/core gives the same bits as scalar C, as C of 4, 8 and 16 lanes, and
- * as GLSL on a Vulkan device that rounds as C does; on other devices it stays within a tolerance. */
+ * as GLSL on Mesa's software device; on others it stays within a tolerance. */
 #include "../test.h"
 #include "dialect_slots.h"
 
@@ -362,8 +362,8 @@ static void test_16_lanes(void **state) {
 #endif
 
 #if defined(HAVE_VULKAN)
-/* Devices that do not round as C does: relative 1e-3 for nearly all values (Vulkan allows 2.5 ulp for a division, and
- * subtractions magnify it); where a choice tips over, the whole reservoir is another one. */
+/* Devices that flush denormal numbers, which some of the kernel's scores are: relative 1e-3 for nearly all values;
+ * where a choice tips over, the whole reservoir is another one. */
 static void expect_close(const char *what, const uint32_t *have, const uint32_t *want) {
     size_t off = 0;
     for (int slot = 0; slot < ITEM_SLOTS; slot++)
@@ -378,8 +378,9 @@ static void expect_close(const char *what, const uint32_t *have, const uint32_t 
 }
 
 #define PART(code)                                                                                                     \
-    { code, sizeof(code) }
+    { #code, code, sizeof(code) }
 static const struct {
+    const char *name;
     const uint32_t *spirv;
     size_t bytes;
 } parts[] = { PART(dialect_lights), PART(dialect_reservoirs), PART(dialect_frames),
@@ -400,13 +401,13 @@ static void test_glsl(void **state) {
     uint32_t number = 0;
     for (; vulkan_open(&gpu, number); number++) {
         print_message("# %s%s\n", gpu.device, gpu.validated ? "" : " (without the validation layer)");
-        bool ok = true;
-        for (size_t i = 0; ok && i < sizeof(parts) / sizeof(*parts); i++)
-            ok = dialect_shader(&gpu, parts[i].spirv, parts[i].bytes, have);
-        if (!ok)
-            print_message("# %s\n", gpu.why);
+        size_t i = 0, count = sizeof(parts) / sizeof(*parts);
+        while (i < count && dialect_shader(&gpu, parts[i].spirv, parts[i].bytes, have))
+            i++;
+        if (i < count)
+            print_message("# %s: %s\n", parts[i].name, gpu.why);
         vulkan_close(&gpu);
-        assert_true(ok);
+        assert_true(i == count);
         assert_int_equal(gpu.messages, 0);
         if (gpu.software)
             expect_same(gpu.device, have, want, true);

@@ -8,7 +8,7 @@
 
 typedef struct vulkan_run {
     char device[256]; /* its name */
-    bool software;    /* runs on the CPU: rounds as C does */
+    bool software;    /* runs on the CPU: flushes nothing */
     bool validated;   /* the validation layer is there and on */
     int messages;     /* warnings and errors it has printed so far */
     char why[256];    /* what went wrong, when something did */
