@@ -159,6 +159,11 @@ static bool fits(turn *t, const char *what, double made, double frame, bool floo
     return true;
 }
 
+/* Returns the seconds of a frame without those that it waited for shaders to be compiled: others do not wait again. */
+static double seconds_of(const noc_frame_stats *frame, const noc_frame_stats *before) {
+    return fmax(frame->wall_seconds - (frame->compile_seconds - before->compile_seconds), 0);
+}
+
 /* A case more, and the row that it fills; none where the backend refuses it. */
 static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     bench *b = t->b;
@@ -185,7 +190,7 @@ static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     into->triangles = info.triangles;
     into->lights = info.lights;
     t->made = row->load_seconds + times.first.build_seconds + times.lights.build_seconds;
-    t->frame = times.last.wall_seconds;
+    t->frame = seconds_of(&times.last, &times.first);
     t->round += t->frame * frames_of(of->floor);
     return NOC_OK;
 }
@@ -532,17 +537,18 @@ noc_status bench_probe(bench *b) {
     const bench_args *args = b->args;
     noc_progress progress = { show_probe, NULL };
     noc_render_params p = params_of(args, BENCH_STILL);
-    noc_frame_stats stats;
+    noc_frame_stats stats[2];
     noc_camera camera;
     b->kept = noc_view_create(b->device, b->scene);
     noc_status status = b->kept ? NOC_OK : NOC_ERR_MEMORY;
     status = status ? status : camera_of(b->scene, NOC_VIEWPOINT_STREET, args->width, args->height, &camera);
-    for (int i = 0; !status && i < 2; i++)
+    for (int i = 0; !status && i < 2; i++) {
         status = noc_view_render(b->kept, &camera, &p, &progress);
+        noc_view_get_stats(b->kept, &stats[i]);
+    }
     if (status)
         return status;
-    noc_view_get_stats(b->kept, &stats);
-    b->frame = stats.wall_seconds;
+    b->frame = seconds_of(&stats[1], &stats[0]);
     if (args->time > 0 && !args->quick && !cli_given(&args->common, "size"))
         choose_size(b);
     return NOC_OK;
