@@ -205,8 +205,10 @@ def tests(run):
             ("\n" + "\n".join(told) + "\n" if told else ""))
 
 
-def without(run, step, title):
-    return "## %s\n\nNot measured: %s.\n" % (title, run.why(step) or "its file is not whole")
+def without(run, step, title, bench=None):
+    """A table without rows: the step was left out or failed, or it left out all of them."""
+    left = (bench or {}).get("left_out") or [{"why": "its file is not whole"}]
+    return "## %s\n\nNot measured: %s.\n" % (title, run.why(step) or left[0]["why"])
 
 
 def left_out(bench, table_name):
@@ -225,7 +227,7 @@ def floor(run):
     bench = read_json(run.work + "/floor.json")
     rows = bench and bench["tables"].get("floor")
     if not rows:
-        return without(run, "floor", title)
+        return without(run, "floor", title, bench)
     out = []
     for r in rows:
         seconds, floor_seconds = r.get(run.seconds), r.get("floor_" + run.seconds)
@@ -244,7 +246,7 @@ def passes(run):
     bench = read_json(run.work + "/floor.json")
     rows = bench and bench["tables"].get("floor")
     if not rows:
-        return without(run, "floor", "Milliseconds a pass")
+        return without(run, "floor", "Milliseconds a pass", bench)
     found = []
     for r in rows:
         for p in r.get("passes", []):
@@ -263,7 +265,8 @@ def growth(run):
     bench = read_json(run.work + "/growth.json")
     lights = bench and bench["tables"].get("lights")
     windows = bench and bench["tables"].get("windows")
-    text = "## More lights at equal rays\n\n"
+    title = "More lights at equal rays"
+    text = "## %s\n\n" % title
     if lights:
         first, out = lights[0], []
         for r in lights:
@@ -276,7 +279,7 @@ def growth(run):
         text += table(["Lights", "ms a frame", "over the first", "of its floor", "at equal rays", FIRST], out)
         text += left_out(bench, "lights") + unfinished(run, "growth")
     else:
-        text += "Not measured: %s.\n" % (run.why("growth") or "its file is not whole")
+        text = without(run, "growth", title, bench)
     if windows and len(windows) > 1:
         text += ("\nWindows on over windows off in `builtin:city`, `%s`: %s, the floor %s.\n" %
                  (bench["method"], number(ratio(windows[1][run.seconds], windows[0][run.seconds])),
@@ -366,7 +369,7 @@ def processor(run):
     bench = read_json(run.work + "/cpu.json")
     rows = bench and bench["tables"].get("floor")
     if not rows:
-        return without(run, "cpu", "The processor beside it")
+        return without(run, "cpu", "The processor beside it", bench)
     return ("## The processor beside it\n\n%s, %d cores, the same frames by the CPU backend, by the clock.\n\n" %
             (bench["processor"], bench["cores"]) +
             table(["Method, view", "ms a frame", "over its floor", FIRST],

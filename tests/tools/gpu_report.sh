@@ -120,6 +120,14 @@ result $? "steps that do not fit into the time are left out, and said"
 SLOW=floor,passes report '  vulkan 0 discrete, Y, Z 1' 20
 says '## Frame over trace floor' 'Not measured: it was stopped at its limit' '| SRIS #40'
 result $? "a step that is stuck takes its own share of the time"
+python3 - bench.json none.json <<'NONE'
+import json, sys
+bench = json.load(open(sys.argv[1]))
+bench["tables"]["floor"] = []
+json.dump(bench, open(sys.argv[2], "w"))
+NONE
+BENCH=$work/none.json report '  vulkan 0 discrete, Y, Z 1' 60
+says '## Frame over trace floor' 'Not measured: no time.'; result $? "a table whose rows were all left out says why"
 # ended SIGNAL: a run that gets this signal while it measures cars
 ended() {
     rm -rf made asked
