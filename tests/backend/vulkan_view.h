@@ -39,8 +39,8 @@ static inline hit_numbers find_numbers(const vk_world *w) {
     assert_true(n.entry && n.at && order);
     for (size_t i = 0; i < parts->len; i++)
         for (size_t k = 0; k < parts->data[i]->blas.len; k++, number++) {
-            const vk_buffer *b = &parts->data[i]->blas.data[k].order;
-            assert_int_equal(noc_vk_read(w->device, b, 0, order, (size_t)b->bytes), NOC_OK);
+            const vk_piece *b = &parts->data[i]->blas.data[k].order;
+            assert_int_equal(noc_vk_read(w->device, &b->chunk->buffer, b->at, order, (size_t)b->bytes), NOC_OK);
             for (uint32_t p = 0; p < b->bytes / 4; p++) {
                 n.entry[order[p]] = number;
                 n.at[order[p]] = p;

@@ -97,18 +97,34 @@ typedef struct vk_device {
     void *host; /* the CPU backend's device; NULL: no question was asked yet */
 } vk_device;
 
-/* ---- structure.c ---- */
+/* ---- blas.c ---- */
+
+/* A buffer that pieces are cut from. It goes when nobody holds it. */
+typedef struct vk_chunk {
+    vk_buffer buffer;
+    VkDeviceSize used;
+    int holders;
+} vk_chunk;
+
+typedef struct vk_piece {
+    vk_chunk *chunk; /* that it holds; NULL: there is none */
+    VkDeviceSize at, bytes;
+} vk_piece;
 
 /* Triangles that are built together, and where their numbers in the scene are. */
 typedef struct vk_blas {
     VkAccelerationStructureKHR structure;
     VkDeviceAddress address;
-    vk_buffer store, order;
+    vk_piece store, order;
 } vk_blas;
+
+typedef NOC_ARRAY(vk_blas) vk_blas_list;
+
+/* ---- structure.c ---- */
 
 typedef struct vk_part {
     noc_part of;
-    NOC_ARRAY(vk_blas) blas;
+    vk_blas_list blas;
     int holders;
 } vk_part;
 
@@ -129,6 +145,7 @@ typedef struct vk_structure {
     vk_tlas tlas[2]; /* now and past, by turns */
     int now;
     vk_buffer instances, entries, scratch; /* of the TLAS */
+    vk_chunk *open;                        /* for the next small pieces of BLASes; NULL: none yet */
     VkDescriptorPool sets;
     uint64_t geometry, moved; /* versions of the scene that it knows */
 } vk_structure;
@@ -319,6 +336,18 @@ noc_status noc_vk_pipelines_create(vk_device *d);
 void noc_vk_pipelines_destroy(vk_device *d);
 /* The pipeline of a shader, made when it is first asked for. */
 noc_status noc_vk_pipeline(vk_device *d, vk_shader shader, const vk_pipeline **pipeline);
+
+/* blas.c */
+/* Builds a BLAS of so many triangles, whose numbers in the scene it puts in the order of the BLAS, and appends it to
+ * the list; on failure what is appended is to be freed, too. */
+noc_status noc_vk_build_blas(vk_world *w, uint32_t *order, size_t count, vk_blas_list *list);
+void noc_vk_free_blas(vk_device *d, vk_blas *b); /* no command in flight may use it */
+/* A structure of this type in `bytes` bytes of a buffer, from byte `at` on, a multiple of 256. */
+noc_status noc_vk_make_structure(vk_device *d, VkAccelerationStructureTypeKHR type, const vk_buffer *store,
+                                 VkDeviceSize at, VkDeviceSize bytes, VkAccelerationStructureKHR *structure,
+                                 VkDeviceAddress *address);
+VkDeviceAddress noc_vk_piece_address(const vk_piece *p);
+void noc_vk_let_go_of_chunk(vk_device *d, vk_chunk *chunk); /* NULL: nothing happens */
 
 /* structure.c */
 noc_status noc_vk_structure_create(vk_world *w);
