@@ -52,6 +52,7 @@ typedef enum noc_status {
     NOC_ERR_MEMORY,
     NOC_ERR_UNSUPPORTED, /* this build lacks the part, or the format has a feature that is not read */
     NOC_ERR_CANCELLED,   /* the progress callback asked to stop */
+    NOC_ERR_LOST,        /* the device was lost, by its driver or its cable; a new noc_device is needed */
 } noc_status;
 
 typedef enum noc_log_level { NOC_LOG_ERROR, NOC_LOG_WARN, NOC_LOG_INFO, NOC_LOG_DEBUG } noc_log_level;

@@ -276,7 +276,9 @@ NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *lo
  * and history goes on. progress may be NULL; when it cancels, the frame is dropped, what was accumulated stays (of the
  * camera and parameters that it was made with, so nothing where those have changed), and NOC_ERR_CANCELLED is returned.
  * So it is with NOC_ERR_MEMORY; where there was none for the picture's buffers, the picture starts anew. Either way the
- * next frame may succeed. */
+ * next frame may succeed. After NOC_ERR_LOST none does: what stays is the picture as it was read last, by
+ * noc_view_image or every ten seconds by the view itself, and noc_frame_stats.frames is the number of its frames, 0 for
+ * none. */
 NOC_API noc_status noc_view_render(noc_view *view, const noc_camera *camera, const noc_render_params *params,
                                    const noc_progress *progress);
 /* Forgets history and accumulation, the frame number, and what was learned of the lights' visibility. */
@@ -285,7 +287,8 @@ NOC_API void noc_view_reset(noc_view *view);
  * what was learned, go on. */
 NOC_API void noc_view_restart(noc_view *view);
 
-/* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
+/* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame, and after
+ * reporting an error. */
 NOC_API noc_image *noc_view_image(noc_view *view);
 
 /* What rays meet first in the scene as of the last commit, for who picks, measures or walks: hits[i] is that of

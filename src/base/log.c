@@ -48,6 +48,7 @@ const char *noc_status_text(noc_status status) {
     case NOC_ERR_MEMORY: return "out of memory";
     case NOC_ERR_UNSUPPORTED: return "not supported";
     case NOC_ERR_CANCELLED: return "cancelled";
+    case NOC_ERR_LOST: return "device lost";
     }
     return "unknown status";
 }

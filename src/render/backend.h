@@ -72,7 +72,7 @@ typedef struct noc_backend {
     /* What follows is of a view; one thread at a time uses it. */
     noc_status (*view_create)(void *world, void **view);
     void (*view_destroy)(void *view);
-    /* What a picture takes, to be held against the machine before anything is allocated. */
+    /* What a picture takes of the machine's memory, to be held against it before anything is allocated. */
     size_t (*bytes_a_pixel)(int reservoir_sets, uint32_t aovs);
     /* Buffers for pictures of this size, with so many reservoir sets. What was held is lost where the size changes, and
      * when this fails; more sets for the same size leave it as it is. */
@@ -86,8 +86,11 @@ typedef struct noc_backend {
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
     noc_status (*read)(void *view, noc_image *image);
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none).
-     * False where it kept none. */
-    bool (*aov)(void *view, noc_aov aov, float *value);
+     * NOC_ERR_ARGUMENT, which the caller reports: it kept none. */
+    noc_status (*aov)(void *view, noc_aov aov, float *value);
+    /* Returns true if the device was lost. *frames: in the mean that `read` gives from now on; 0: it gives none. NULL:
+     * the device cannot be lost. */
+    bool (*lost)(void *view, uint64_t *frames);
     void (*rows)(void *view, const frame_camera *camera, const noc_frame_rows *rows); /* camera: of that frame */
     /* Calls fn for each item by the device's threads, as noc_pool_run does. */
     void (*run)(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
@@ -107,7 +110,8 @@ typedef struct noc_backend {
     noc_status (*ask)(void *view, const noc_render_params *params, bool tree, noc_asking *out);
     /* Of each whether nothing is in the way, in the scene as `ask` has found it. Any number of threads may call it. */
     void (*clear)(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
-    /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
+    /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else, and
+     * forgets them. floor is NULL: it only forgets them. */
     void (*record)(void *view, bool on);
     noc_status (*replay)(void *view, noc_trace_floor *floor);
 } noc_backend;

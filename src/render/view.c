@@ -120,6 +120,13 @@ static void remember(noc_view *v, const noc_frame *frame) {
     };
 }
 
+/* What was not read of a device before it was lost is no part of the mean any more. */
+static void note_loss(noc_view *v) {
+    uint64_t left;
+    if (v->backend->lost && v->backend->lost(v->state, &left))
+        v->stats.frames = v->history.accumulated = NOC_MIN(v->history.accumulated, left);
+}
+
 static void note_times(noc_view *v) {
     v->stats.wall_seconds = noc_wall_seconds() - v->began_wall;
     v->stats.cpu_seconds = noc_cpu_seconds() - v->began_cpu;
@@ -157,6 +164,8 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     v->backend->stats(v->state, &stats);
     stats.frames = v->history.accumulated;
     v->stats = stats;
+    if (status != NOC_OK)
+        note_loss(v);
     note_times(v);
     return status;
 }
@@ -206,6 +215,7 @@ noc_image *noc_view_image(noc_view *v) {
         return NULL;
     }
     if (v->backend->read(v->state, image) != NOC_OK) {
+        note_loss(v);
         free(wide);
         noc_image_destroy(image);
         return NULL;
@@ -236,11 +246,14 @@ noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
     if (!channel)
         return NULL;
     noc_describe_aov(&v->history.params, aov, channel);
-    if (v->backend->aov(v->state, aov, channel->value))
+    noc_status status = v->backend->aov(v->state, aov, channel->value);
+    if (status == NOC_OK)
         return channel;
+    note_loss(v);
     noc_channel_destroy(channel);
-    noc_error(v->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs",
-              noc_aov_name(aov));
+    if (status == NOC_ERR_ARGUMENT)
+        noc_error(v->log, status, "render: the last frame did not keep the view \"%s\": name it in aovs",
+                  noc_aov_name(aov));
     return NULL;
 }
 
@@ -257,6 +270,7 @@ void noc_view_get_stats(noc_view *v, noc_frame_stats *stats) {
         noc_frame_stats of_last = { .dropped = v->stats.dropped, .frames = v->stats.frames };
         v->backend->stats(v->state, &of_last);
         v->stats = of_last;
+        note_loss(v);
         note_times(v);
     }
     *stats = v ? v->stats : (noc_frame_stats){ 0 };
@@ -309,7 +323,7 @@ noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc
     v->backend->record(v->state, true);
     status = make_frame(v, camera, params, NULL);
     v->backend->record(v->state, false);
-    noc_status traced = v->backend->replay(v->state, floor);
+    noc_status traced = v->backend->replay(v->state, status == NOC_OK ? floor : NULL);
     noc_scene_unlock_frame(v->scene);
     return status != NOC_OK ? status : traced;
 }

@@ -19,7 +19,7 @@ noc_status noc_cpu_stage(void *view, const noc_frame *frame, const noc_stage *st
                          double from, double to);
 noc_status noc_cpu_accumulate(void *view, const noc_frame *frame);
 noc_status noc_cpu_read(void *view, noc_image *image);
-bool noc_cpu_read_aov(void *view, noc_aov aov, float *value);
+noc_status noc_cpu_read_aov(void *view, noc_aov aov, float *value);
 void noc_cpu_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
 void noc_cpu_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
 void noc_cpu_stats(void *view, noc_frame_stats *stats);

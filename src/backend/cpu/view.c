@@ -156,10 +156,10 @@ noc_frame_blocks noc_cpu_blocks(const cpu_view *s, int gbuffer) {
                                .placings = &s->world->placings };
 }
 
-bool noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
+noc_status noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
     const cpu_view *s = state;
     noc_frame_blocks b = noc_cpu_blocks(s, s->b.kept);
-    return noc_views_read(&s->b.views, &b, aov, value);
+    return noc_views_read(&s->b.views, &b, aov, value) ? NOC_OK : NOC_ERR_ARGUMENT;
 }
 
 void noc_cpu_rows(void *state, const frame_camera *camera, const noc_frame_rows *rows) {
@@ -213,7 +213,7 @@ void noc_cpu_record(void *state, bool on) {
 
 noc_status noc_cpu_replay(void *state, noc_trace_floor *floor) {
     cpu_view *s = state;
-    noc_status status = noc_cpu_replay_rays(s, floor);
+    noc_status status = floor ? noc_cpu_replay_rays(s, floor) : NOC_OK;
     forget_packets(s);
     return status;
 }

@@ -23,14 +23,22 @@ static const char *result_text(VkResult result) {
 noc_status noc_vk_failed(vk_device *d, VkResult result, const char *what) {
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY ||
                   result == VK_ERROR_TOO_MANY_OBJECTS;
-    noc_status status = memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
     const char *text = result_text(result);
     if (d->lost)
-        return status;
+        return NOC_ERR_LOST;
     d->lost = result == VK_ERROR_DEVICE_LOST;
+    noc_status status = d->lost ? NOC_ERR_LOST : memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
     if (text)
         return noc_error(d->log, status, "vulkan: %s: %s (%s)", what, text, d->name);
     return noc_error(d->log, status, "vulkan: %s: error %d (%s)", what, (int)result, d->name);
+}
+
+noc_status noc_vk_enter(vk_device *d) {
+    pthread_mutex_lock(&d->lock);
+    if (!d->lost)
+        return NOC_OK;
+    pthread_mutex_unlock(&d->lock);
+    return noc_error(d->log, NOC_ERR_LOST, "vulkan: the device was lost before, and renders no more (%s)", d->name);
 }
 
 /* ---- the instance ---- */
@@ -96,13 +104,26 @@ static bool asks_for_speed(noc_log *log) {
 
 static void describe(vk_device *d) {
     uint32_t bits = 0;
+    VkPhysicalDeviceMaintenance3Properties pieces = { .sType =
+                                                          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES };
+    VkPhysicalDeviceMaintenance4Properties buffers = { .sType =
+                                                           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES,
+                                                       .maxBufferSize = UINT64_MAX };
+    VkPhysicalDeviceMemoryProperties2 memory = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2 };
     d->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
     d->structures.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
     d->structures.pNext = &d->rays;
+    d->rays.pNext = &pieces;
+    if (noc_vk_has_extension(d->physical, VK_KHR_MAINTENANCE_4_EXTENSION_NAME))
+        pieces.pNext = &buffers;
     VkPhysicalDeviceProperties2 p = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
                                       .pNext = &d->structures };
     vkGetPhysicalDeviceProperties2(d->physical, &p);
-    vkGetPhysicalDeviceMemoryProperties(d->physical, &d->memory);
+    d->structures.pNext = d->rays.pNext = NULL;
+    d->largest = NOC_MIN(pieces.maxMemoryAllocationSize, buffers.maxBufferSize);
+    d->budgeted = noc_vk_has_extension(d->physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    vkGetPhysicalDeviceMemoryProperties2(d->physical, &memory);
+    d->memory = memory.memoryProperties;
     d->family = noc_vk_compute_family(d->physical, &bits);
     d->software = p.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     d->constants.rounds = d->software || asks_for_speed(d->log);
@@ -145,7 +166,7 @@ void noc_vk_device_destroy(void *device) {
         return;
     noc_vk_forget_host_device(d);
     if (d->device) {
-        vkDeviceWaitIdle(d->device);
+        noc_vk_settle(d);
         noc_vk_pipelines_destroy(d);
         noc_vk_memory_destroy(d);
         vkDestroyCommandPool(d->device, d->commands, NULL);
@@ -169,6 +190,7 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
     d->params = *params;
     d->constants = (vk_constants){ .list_workers = 256, .share_workers = 64 };
     d->list_bytes = (size_t)256 << 20;
+    d->keep_seconds = 10;
     pthread_mutex_init(&d->lock, NULL);
     pthread_mutex_init(&d->host_lock, NULL);
     noc_status status = (d->pool = noc_pool_create(params->threads)) ? NOC_OK : noc_no_memory(log, "device");
@@ -204,6 +226,7 @@ const noc_backend noc_backend_vulkan = {
     .accumulate = noc_vk_accumulate,
     .read = noc_vk_read_picture,
     .aov = noc_vk_read_aov,
+    .lost = noc_vk_lost,
     .rows = noc_vk_rows,
     .run = noc_vk_run,
     .stats = noc_vk_stats,

@@ -55,27 +55,26 @@ const char *noc_vk_make_instance(const VkDebugUtilsMessengerCreateInfoEXT *messa
     return why;
 }
 
-static bool has_extension(const VkExtensionProperties *have, uint32_t count, const char *name) {
-    for (uint32_t i = 0; i < count; i++)
-        if (!strcmp(have[i].extensionName, name))
-            return true;
-    return false;
-}
-
-/* Returns the first of the extensions that the device lacks, NULL: it has all. */
-static const char *missing_extension(VkPhysicalDevice physical) {
+bool noc_vk_has_extension(VkPhysicalDevice physical, const char *name) {
     uint32_t count = 0;
-    const char *missing = NULL;
+    bool has = false;
     VkExtensionProperties *have = NULL;
     if (vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) == VK_SUCCESS)
         have = noc_calloc(count + 1, sizeof(*have));
     if (!have || vkEnumerateDeviceExtensionProperties(physical, NULL, &count, have) != VK_SUCCESS)
         count = 0;
-    for (size_t i = 0; i < VK_EXTENSIONS && !missing; i++)
-        if (!have || !has_extension(have, count, noc_vk_extensions[i]))
-            missing = noc_vk_extensions[i];
+    for (uint32_t i = 0; i < count && !has; i++)
+        has = !strcmp(have[i].extensionName, name);
     free(have);
-    return missing;
+    return has;
+}
+
+/* Returns the first of the extensions that the device lacks, NULL: it has all. */
+static const char *missing_extension(VkPhysicalDevice physical) {
+    for (size_t i = 0; i < VK_EXTENSIONS; i++)
+        if (!noc_vk_has_extension(physical, noc_vk_extensions[i]))
+            return noc_vk_extensions[i];
+    return NULL;
 }
 
 uint32_t noc_vk_compute_family(VkPhysicalDevice physical, uint32_t *bits) {

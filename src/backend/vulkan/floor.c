@@ -45,7 +45,7 @@ noc_status noc_vk_replay(void *view, noc_trace_floor *floor) {
     vk_view *v = view;
     pthread_mutex_lock(&v->device->lock);
     noc_status status = noc_vk_finish_flights(v);
-    if (status == NOC_OK)
+    if (status == NOC_OK && floor)
         status = noc_vk_trace_kept(v, floor);
     noc_vk_forget_rays(v);
     pthread_mutex_unlock(&v->device->lock);

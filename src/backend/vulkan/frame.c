@@ -247,10 +247,12 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     return NOC_OK;
 }
 
+/* A frame that was dropped may have left them half recorded. */
 static VkResult begin_commands(const vk_flight *f) {
     VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT };
-    return vkBeginCommandBuffer(f->commands, &info);
+    VkResult result = vkResetCommandBuffer(f->commands, 0);
+    return result == VK_SUCCESS ? vkBeginCommandBuffer(f->commands, &info) : result;
 }
 
 /* Submits what is recorded. */
@@ -365,7 +367,7 @@ static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
 
 /* What the frame needs of the world and of the view, before anything is recorded. */
 static noc_status prepare(vk_view *v, const noc_frame *frame) {
-    noc_status status = v->device->lost ? NOC_ERR_UNSUPPORTED : refuse(v, frame); /* its loss was reported */
+    noc_status status = refuse(v, frame);
     if (status == NOC_OK)
         status = finish(v, &v->flights[v->flight]);
     if (status == NOC_OK)
@@ -427,7 +429,8 @@ noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *sta
     noc_status status = NOC_OK;
     (void)to;
     if (stage == &frame->plan->stages[0]) {
-        pthread_mutex_lock(&v->device->lock);
+        if ((status = noc_vk_enter(v->device)) != NOC_OK)
+            return status;
         v->open = true;
         status = begin(v, frame);
     }
@@ -475,14 +478,14 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     v->steps.len = 0;
     noc_status status = noc_vk_schedule_mean(frame->plan, &facts, &v->steps) ? record(v, frame, &v->steps)
                                                                              : noc_no_memory(v->log, "render");
-    if (status == NOC_OK)
-        status = submit(v);
+    if (status == NOC_OK && (status = submit(v)) != NOC_OK)
+        v->past = past;
     if (status == NOC_OK)
         status = noc_vk_keep_views(v, frame, &past);
     if (status == NOC_OK && frame->plan->learns)
         noc_vk_end_learning(v);
     if (status == NOC_OK)
-        v->coverage_frames = frame->accumulated + 1;
+        status = noc_vk_note_mean(v, frame->accumulated + 1);
     return drop(v, status);
 }
 

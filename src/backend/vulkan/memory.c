@@ -1,8 +1,10 @@
 /* Buffers, and what goes between them and the host. Every buffer has an allocation of its own: there are some 60, where
- * each driver allows 4,096. */
+ * each driver allows 4,096. What there is one a model of, shares buffers (blas.c). */
 #include "backend/vulkan/vulkan.h"
 
-enum { READBACK_BYTES = 16 << 20 };
+#include <nocturne/text.h>
+
+enum { READBACK_BYTES = 16 << 20, LARGE_BYTES = 64 << 20 };
 
 static const VkMemoryPropertyFlags wanted[][2] = {
     /* the best, and what will do */
@@ -45,7 +47,50 @@ static VkResult allocate(vk_device *d, vk_place place, vk_buffer *b) {
     return vkAllocateMemory(d->device, &info, NULL, &b->memory);
 }
 
+/* Of the memory that buffers of the device lie in: all, and what is free of it as far as the driver tells. */
+static void find_room(const vk_device *d, VkDeviceSize *all, VkDeviceSize *free) {
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT budget = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT
+    };
+    VkPhysicalDeviceMemoryProperties2 now = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
+                                              .pNext = &budget };
+    uint32_t type = memory_type(d, UINT32_MAX, wanted[VK_PLACE_DEVICE][0]);
+    uint32_t heap = type == UINT32_MAX ? 0 : d->memory.memoryTypes[type].heapIndex;
+    *all = d->memory.memoryHeaps[heap].size;
+    VkDeviceSize most = *all, used = d->bytes;
+    if (d->budgeted) {
+        vkGetPhysicalDeviceMemoryProperties2(d->physical, &now);
+        most = NOC_MIN(most, budget.heapBudget[heap]);
+        used = budget.heapUsage[heap];
+    }
+    *free = most > used ? most - used : 0;
+}
+
+noc_status noc_vk_check_room(vk_device *d, VkDeviceSize bytes, VkDeviceSize given_back, const char *what) {
+    VkDeviceSize all, free;
+    char need[32], has[32], left[32];
+    if (bytes < LARGE_BYTES)
+        return NOC_OK;
+    find_room(d, &all, &free);
+    if (bytes <= free + given_back)
+        return NOC_OK;
+    return noc_error(d->log, NOC_ERR_MEMORY, "vulkan: %s, %s: out of device memory, %s of %s are free (%s)", what,
+                     noc_text_bytes(need, bytes), noc_text_bytes(left, NOC_MIN(free + given_back, all)),
+                     noc_text_bytes(has, all), d->name);
+}
+
+/* Before a buffer is asked for: drivers promise more than they have, and the machine dies of it later. */
+static noc_status check_buffer(vk_device *d, VkDeviceSize bytes, const char *what) {
+    char need[32], most[32];
+    if (bytes <= d->largest)
+        return noc_vk_check_room(d, bytes, 0, what);
+    return noc_error(d->log, NOC_ERR_MEMORY, "vulkan: %s, %s: the device gives %s at once (%s)", what,
+                     noc_text_bytes(need, bytes), noc_text_bytes(most, d->largest), d->name);
+}
+
 void noc_vk_free_buffer(vk_device *d, vk_buffer *b) {
+    if (b->buffer && d->uploading)
+        noc_vk_settle(d); /* what is recorded may write to it */
     if (b->buffer)
         vkDestroyBuffer(d->device, b->buffer, NULL);
     if (b->memory)
@@ -57,7 +102,11 @@ void noc_vk_free_buffer(vk_device *d, vk_buffer *b) {
 
 noc_status noc_vk_make_buffer(vk_device *d, VkDeviceSize bytes, VkBufferUsageFlags usage, vk_place place,
                               const char *what, vk_buffer *b) {
-    *b = (vk_buffer){ .bytes = bytes };
+    *b = (vk_buffer){ 0 };
+    noc_status status = check_buffer(d, bytes, what);
+    if (status != NOC_OK)
+        return status;
+    b->bytes = bytes;
     VkBufferCreateInfo info = { .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = bytes,
                                 .usage = usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
@@ -71,9 +120,9 @@ noc_status noc_vk_make_buffer(vk_device *d, VkDeviceSize bytes, VkBufferUsageFla
     if (result == VK_SUCCESS && place != VK_PLACE_DEVICE)
         result = vkMapMemory(d->device, b->memory, 0, VK_WHOLE_SIZE, 0, &b->mapped);
     if (result != VK_SUCCESS) {
-        char text[128];
+        char text[128], need[32];
         noc_vk_free_buffer(d, b);
-        noc_snprintf(text, sizeof(text), "%s, %.1f MB", what, (double)bytes * 1e-6);
+        noc_snprintf(text, sizeof(text), "%s, %s", what, noc_text_bytes(need, bytes));
         return noc_vk_failed(d, result, text);
     }
     VkBufferDeviceAddressInfo address = { .sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, .buffer = b->buffer };
@@ -143,10 +192,10 @@ noc_status noc_vk_open_upload(vk_device *d, VkCommandBuffer *commands) {
     return NOC_OK;
 }
 
-noc_status noc_vk_submit_upload(vk_device *d) {
+static VkResult submit_upload(vk_device *d) {
     vk_upload *u = &d->uploads[d->upload];
     if (!d->uploading)
-        return NOC_OK;
+        return VK_SUCCESS;
     noc_vk_barrier(u->commands);
     VkSubmitInfo submit = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                             .commandBufferCount = 1,
@@ -159,7 +208,17 @@ noc_status noc_vk_submit_upload(vk_device *d) {
     d->uploading = false;
     u->pending = result == VK_SUCCESS;
     d->upload = (d->upload + 1) % VK_UPLOADS;
+    return result;
+}
+
+noc_status noc_vk_submit_upload(vk_device *d) {
+    VkResult result = submit_upload(d);
     return result == VK_SUCCESS ? NOC_OK : noc_vk_failed(d, result, "uploading");
+}
+
+void noc_vk_settle(vk_device *d) {
+    submit_upload(d);
+    vkQueueWaitIdle(d->queue);
 }
 
 noc_status noc_vk_write(vk_device *d, const vk_buffer *to, VkDeviceSize at, const void *data, size_t bytes) {

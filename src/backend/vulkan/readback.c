@@ -24,7 +24,7 @@ size_t noc_vk_views_bytes(uint32_t aovs) {
         bytes += sizeof(gblock) / BLOCK + 4;
     if (noc_views_need_reservoirs(aovs))
         bytes += sizeof(rblock) / BLOCK;
-    return bytes + (aovs ? 2 * sizeof(cblock) / BLOCK : 0);
+    return bytes + (aovs ? sizeof(cblock) / BLOCK : 0);
 }
 
 void noc_vk_views_free(vk_view *v) {
@@ -37,7 +37,6 @@ void noc_vk_views_free(vk_view *v) {
     free(w->g);
     free(w->r);
     free(w->colour);
-    free(w->picture);
     free(w->instance);
     free(w->triangle);
     free(w->emitter);
@@ -55,7 +54,7 @@ static noc_frame_blocks frame_blocks(const vk_view *v) {
                                .g = w->g,
                                .r = w->r,
                                .colour = w->colour,
-                               .picture = w->picture,
+                               .picture = v->mean.colour,
                                .instance = v->b.instance.bytes ? (const uint32_t(*)[BLOCK])w->instance : NULL,
                                .emitter = w->emitter,
                                .past = &w->past,
@@ -69,8 +68,8 @@ static noc_frame_blocks frame_blocks(const vk_view *v) {
 /* Room for what the frame leaves, on the host. */
 static bool make_host(vk_views *w, uint32_t aovs, size_t blocks) {
     return (!noc_views_need_surfaces(aovs) || (MAKE(w->g) && MAKE(w->instance))) &&
-           (!noc_views_need_reservoirs(aovs) || MAKE(w->r)) && MAKE(w->colour) && MAKE(w->picture) &&
-           MAKE(w->emitter) && (!needs_triangles(aovs) || MAKE(w->triangle));
+           (!noc_views_need_reservoirs(aovs) || MAKE(w->r)) && MAKE(w->colour) && MAKE(w->emitter) &&
+           (!needs_triangles(aovs) || MAKE(w->triangle));
 }
 
 static noc_status make_buffer(vk_view *v, size_t bytes, vk_buffer *out) {
@@ -87,8 +86,10 @@ static noc_status upload_labels(vk_view *v) {
     if (status == NOC_OK)
         status = noc_vk_write(v->device, &w->labels, 0, w->of.emitter_labels, bytes);
     if (status == NOC_OK)
+        status = noc_vk_submit_upload(v->device);
+    if (status == NOC_OK)
         memcpy(w->labelled, w->of.labelled, sizeof(w->labelled));
-    return status == NOC_OK ? noc_vk_submit_upload(v->device) : status;
+    return status;
 }
 
 /* Buffers that shaders gather into. */
@@ -199,37 +200,27 @@ noc_status noc_vk_keep_views(vk_view *v, const noc_frame *frame, const noc_past 
 /* ---- reading ---- */
 
 /* The lanes of all blocks that saw an emitter in a frame of the mean. */
-static noc_status read_emitters(vk_view *v) {
-    size_t row = v->b.blocks_x;
-    float(*seen)[BLOCK][4] = noc_alloc_large(row, sizeof(*seen));
-    noc_status status = seen ? NOC_OK : noc_no_memory(v->log, "render");
-    for (size_t y = 0; y < v->b.blocks_y && status == NOC_OK; y++) {
-        status = noc_vk_read(v->device, &v->b.coverage, y * row * sizeof(*seen), seen, row * sizeof(*seen));
-        for (size_t x = 0; x < row && status == NOC_OK; x++) {
-            uint16_t *lanes = &v->views.emitter[y * row + x];
-            *lanes = 0;
-            for (int l = 0; l < BLOCK; l++)
-                *lanes |= (uint16_t)((seen[x][l][3] > 0) << l);
-        }
+static void find_emitters(vk_view *v) {
+    for (size_t i = 0; i < blocks_of(&v->b); i++) {
+        uint16_t *lanes = &v->views.emitter[i];
+        *lanes = 0;
+        for (int l = 0; l < BLOCK; l++)
+            *lanes |= (uint16_t)((v->mean.coverage[i][l][3] > 0) << l);
     }
-    free(seen);
-    return status;
 }
 
-bool noc_vk_read_aov(void *view, noc_aov aov, float *value) {
+noc_status noc_vk_read_aov(void *view, noc_aov aov, float *value) {
     vk_view *v = view;
-    vk_views *w = &v->views;
-    noc_status status = NOC_OK;
-    if (!(w->of.held >> aov & 1))
-        return false;
-    pthread_mutex_lock(&v->device->lock);
-    if (aov == NOC_AOV_LUMINANCE)
-        status = read_blocks(v, &v->b.picture, w->picture, sizeof(*w->picture));
-    if (aov == NOC_AOV_VARIANCE || aov == NOC_AOV_ERROR)
-        status = read_emitters(v);
-    pthread_mutex_unlock(&v->device->lock);
+    bool emitters = aov == NOC_AOV_VARIANCE || aov == NOC_AOV_ERROR;
+    if (!(v->views.of.held >> aov & 1))
+        return NOC_ERR_ARGUMENT;
+    noc_status status = emitters || aov == NOC_AOV_LUMINANCE ? noc_vk_read_mean(v) : NOC_OK;
+    if (status != NOC_OK)
+        return status;
+    if (emitters)
+        find_emitters(v);
     noc_frame_blocks b = frame_blocks(v);
-    return status == NOC_OK && noc_views_read(&w->of, &b, aov, value);
+    return noc_views_read(&v->views.of, &b, aov, value) ? NOC_OK : NOC_ERR_ARGUMENT;
 }
 
 void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows) {

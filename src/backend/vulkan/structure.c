@@ -16,7 +16,7 @@ static VkDeviceSize aligned(VkDeviceSize size, VkDeviceSize to) { return (size +
 static void let_go(vk_device *d, vk_part *part) {
     if (!part || --part->holders)
         return;
-    vkQueueWaitIdle(d->queue);
+    noc_vk_settle(d);
     for (size_t i = 0; i < part->blas.len; i++)
         noc_vk_free_blas(d, &part->blas.data[i]);
     array_free(&part->blas);

@@ -1,4 +1,4 @@
-/* A view: the buffers of its picture on the device, and the picture that is read from them. */
+/* A view: the buffers of its picture on the device. */
 #include "backend/vulkan/vulkan.h"
 #include "core/presample_limits.h"
 
@@ -14,8 +14,8 @@ enum {
 };
 
 size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs) {
-    return noc_vk_views_bytes(aovs) + 2 * SURFACE_BYTES + (size_t)sets * (RESERVOIR_BYTES + 4) + 2 * COLOUR_BYTES +
-           COVERAGE_BYTES + RAY_BYTES + ANSWER_BYTES + HIT_BYTES;
+    (void)sets;
+    return noc_vk_views_bytes(aovs) + COLOUR_BYTES + COVERAGE_BYTES;
 }
 
 static void free_picture(vk_device *d, vk_picture *b) {
@@ -52,14 +52,30 @@ static noc_status make_picture(vk_view *v) {
     return status;
 }
 
+/* What the device must have for a picture of this size and the rays of its pixels. Other rays and scratch are a matter
+ * of the plan. */
+static noc_status check_room(const vk_view *v, int width, int height, int sets) {
+    enum { FIXED_BYTES = 2 * SURFACE_BYTES + 2 * COLOUR_BYTES + COVERAGE_BYTES + RAY_BYTES + ANSWER_BYTES + HIT_BYTES };
+    const vk_picture *b = &v->b;
+    bool other = b->width != width || b->height != height;
+    size_t pixels = (((size_t)width + 3) & ~(size_t)3) * (((size_t)height + 3) & ~(size_t)3);
+    size_t each = (other ? FIXED_BYTES : 0) + (size_t)(sets - (other ? 0 : b->sets)) * (RESERVOIR_BYTES + 4);
+    char what[64];
+    noc_snprintf(what, sizeof(what), "a picture of %d x %d", width, height);
+    return noc_vk_check_room(v->device, pixels * each, other ? b->bytes : 0, what);
+}
+
 static noc_status resize(vk_view *v, int width, int height, int sets) {
     vk_picture *b = &v->b;
     noc_status status = noc_vk_finish_flights(v);
+    if (status == NOC_OK)
+        status = check_room(v, width, height, sets);
     if (status != NOC_OK)
         return status;
     if (b->width != width || b->height != height) {
         free_picture(v->device, b);
         noc_vk_views_free(v);
+        noc_vk_free_mean(v);
         b->width = width;
         b->height = height;
         b->blocks_x = ((uint32_t)width + BLOCK_SIDE - 1) / BLOCK_SIDE;
@@ -78,8 +94,10 @@ static noc_status resize(vk_view *v, int width, int height, int sets) {
 
 noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
     vk_view *v = view;
-    pthread_mutex_lock(&v->device->lock);
-    noc_status status = resize(v, width, height, sets);
+    noc_status status = noc_vk_enter(v->device);
+    if (status != NOC_OK)
+        return status;
+    status = resize(v, width, height, sets);
     pthread_mutex_unlock(&v->device->lock);
     return status;
 }
@@ -146,10 +164,12 @@ static noc_status grow_past(vk_view *v, size_t room) {
     if (have)
         vkCmdCopyBuffer(commands, v->past_lights.buffer, more.buffer, 1, &(VkBufferCopy){ .size = have });
     status = noc_vk_wait_idle(d);
-    noc_vk_free_buffer(d, &v->past_lights);
+    noc_vk_free_buffer(d, status == NOC_OK ? &v->past_lights : &more);
+    if (status != NOC_OK)
+        return status;
     v->past_lights = more;
     v->past.room = room;
-    return status;
+    return NOC_OK;
 }
 
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan) {
@@ -205,11 +225,12 @@ static noc_status make_flight(vk_device *d, vk_flight *f) {
 static void destroy(vk_view *v) {
     vk_device *d = v->device;
     noc_vk_finish_flights(v);
-    vkQueueWaitIdle(d->queue);
+    noc_vk_settle(d);
     for (int i = 0; i < VK_FRAMES; i++)
         free_flight(d, &v->flights[i]);
     free_picture(d, &v->b);
     noc_vk_views_free(v);
+    noc_vk_free_mean(v);
     noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
     noc_vk_free_buffer(d, &v->scratch);
@@ -239,9 +260,12 @@ noc_status noc_vk_view_create(void *world, void **view) {
     if (!v)
         return noc_no_memory(w->log, "view");
     *v = (vk_view){ .world = w, .device = d, .scene = w->scene, .log = w->log };
-    pthread_mutex_lock(&d->lock);
-    noc_status status =
-        noc_vk_make_buffer(d, VK_COUNT_KINDS * VK_COUNTERS * 4, 0, VK_PLACE_DEVICE, "a view", &v->counters);
+    noc_status status = noc_vk_enter(d);
+    if (status != NOC_OK) {
+        free(v);
+        return status;
+    }
+    status = noc_vk_make_buffer(d, VK_COUNT_KINDS * VK_COUNTERS * 4, 0, VK_PLACE_DEVICE, "a view", &v->counters);
     for (int i = 0; i < VK_FRAMES && status == NOC_OK; i++)
         status = make_flight(d, &v->flights[i]);
     pthread_mutex_unlock(&d->lock);
@@ -251,55 +275,4 @@ noc_status noc_vk_view_create(void *world, void **view) {
     }
     *view = v;
     return NOC_OK;
-}
-
-/* ---- reading ---- */
-
-static void copy_block(const vk_view *v, const cblock *c, const float (*coverage)[4], uint32_t bx, uint32_t by,
-                       noc_image *image) {
-    for (int l = 0; l < BLOCK; l++) {
-        int x = (int)bx * BLOCK_SIDE + (l & 3), y = (int)by * BLOCK_SIDE + (l >> 2);
-        if (x >= v->b.width || y >= v->b.height)
-            continue;
-        size_t to = (size_t)y * (size_t)v->b.width + (size_t)x;
-        for (int k = 0; k < 3; k++)
-            image->rgb[3 * to + (size_t)k] = c->rgb[k][l];
-        if (image->emitter)
-            image->emitter[to] = coverage[l][3] > 0;
-        for (int k = 0; k < 4 && image->coverage; k++)
-            image->coverage[4 * to + (size_t)k] = coverage[l][k] / (float)v->coverage_frames;
-    }
-}
-
-/* The picture and the emitters in it, a run of rows of blocks at a time. */
-static noc_status read_rows(vk_view *v, noc_image *image, cblock *colour, float (*coverage)[BLOCK][4], uint32_t rows) {
-    const vk_picture *b = &v->b;
-    noc_status status = noc_vk_finish_flights(v);
-    for (uint32_t first = 0; first < b->blocks_y && status == NOC_OK; first += rows) {
-        size_t n = (size_t)NOC_MIN(rows, b->blocks_y - first) * b->blocks_x, at = (size_t)first * b->blocks_x;
-        status = noc_vk_read(v->device, &b->picture, at * sizeof(*colour), colour, n * sizeof(*colour));
-        if (status == NOC_OK)
-            status = noc_vk_read(v->device, &b->coverage, at * sizeof(*coverage), coverage, n * sizeof(*coverage));
-        for (size_t i = 0; i < n && status == NOC_OK; i++)
-            copy_block(v, &colour[i], (const float(*)[4])coverage[i], (uint32_t)(i % b->blocks_x),
-                       first + (uint32_t)(i / b->blocks_x), image);
-    }
-    return status;
-}
-
-noc_status noc_vk_read_picture(void *view, noc_image *image) {
-    vk_view *v = view;
-    uint32_t rows = NOC_MAX((1u << 18) / (v->b.blocks_x * BLOCK), 1u);
-    size_t n = (size_t)rows * v->b.blocks_x;
-    cblock *colour = noc_alloc_large(n, sizeof(*colour));
-    float(*coverage)[BLOCK][4] = noc_alloc_large(n, sizeof(*coverage));
-    noc_status status = colour && coverage ? NOC_OK : noc_no_memory(v->log, "render");
-    if (status == NOC_OK) {
-        pthread_mutex_lock(&v->device->lock);
-        status = read_rows(v, image, colour, coverage, rows);
-        pthread_mutex_unlock(&v->device->lock);
-    }
-    free(colour);
-    free(coverage);
-    return status;
 }

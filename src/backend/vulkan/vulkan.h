@@ -70,6 +70,8 @@ typedef struct vk_device {
     VkQueue queue;
     uint32_t family;
     VkPhysicalDeviceMemoryProperties memory;
+    VkDeviceSize largest; /* buffer that it gives */
+    bool budgeted;        /* it tells how much memory is free */
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR structures;
     char name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
@@ -90,8 +92,9 @@ typedef struct vk_device {
     vk_buffer table;                             /* shader binding table, of all ray tracing pipelines */
     double compile_seconds, compile_cpu_seconds; /* of all pipelines so far */
     vk_constants constants;
-    size_t list_bytes; /* vk_facts */
-    size_t bytes;      /* allocated */
+    size_t list_bytes;   /* vk_facts */
+    double keep_seconds; /* between readings of a mean that nobody asks for */
+    size_t bytes;        /* allocated */
     noc_device_params params;
     pthread_mutex_t host_lock;
     void *host; /* the CPU backend's device; NULL: no question was asked yet */
@@ -236,11 +239,20 @@ typedef struct vk_views {
     uint64_t labelled[2];              /* of.labelled, that `labels` is of */
     gblock *g;                         /* [blocks], as are the next ones */
     rblock *r;
-    cblock *colour, *picture;
+    cblock *colour;
     uint32_t (*instance)[BLOCK], (*triangle)[BLOCK];
     uint16_t *emitter; /* lanes that saw one in a frame of the mean */
     noc_past past;     /* as it was while that frame was made */
 } vk_views;
+
+/* The mean as the host read it last: what is left of a picture when the device is lost. */
+typedef struct vk_mean {
+    cblock *colour; /* [blocks], as the next one; NULL: it was not read yet */
+    float (*coverage)[BLOCK][4];
+    uint64_t frames;  /* in it; 0: it is of an earlier mean, or was not read yet */
+    uint64_t version; /* of the device's that it is */
+    double read;      /* when, or when the mean began */
+} vk_mean;
 
 /* Rays of a step, kept to be traced again. */
 typedef struct vk_kept_rays {
@@ -276,9 +288,10 @@ typedef struct vk_view {
     bool draws;           /* the last frame drew candidates */
     noc_candidates drawn; /* from that */
     uint32_t subsets;
-    uint64_t coverage_frames; /* of the mean */
-    noc_frame_stats stats;    /* of the last finished frame; dropped: of all since it was last asked for */
-    bool recording;           /* rays are kept */
+    uint64_t mean_frames, mean_version; /* of the mean on the device */
+    vk_mean mean;
+    noc_frame_stats stats; /* of the last finished frame; dropped: of all since it was last asked for */
+    bool recording;        /* rays are kept */
     NOC_ARRAY(vk_kept_rays) kept;
     const vk_answerer *answerer; /* NULL: the device traces */
     void *host;                  /* the CPU backend's view; NULL: no question was asked yet */
@@ -296,6 +309,7 @@ typedef struct vk_features {
     VkPhysicalDeviceFeatures2 all; /* the head of the chain */
 } vk_features;
 void noc_vk_chain_features(vk_features *f); /* all off */
+bool noc_vk_has_extension(VkPhysicalDevice physical, const char *name);
 
 #define VK_VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 /* Loads the Vulkan loader and makes an instance, with the validation layer unless `messages` is NULL. Returns why there
@@ -309,6 +323,8 @@ size_t noc_vk_devices(noc_device_info *devices, size_t capacity);
 /* device.c */
 /* Reports a result that is no success, once; a lost device once for all that follows. what: "building ...". */
 noc_status noc_vk_failed(vk_device *d, VkResult result, const char *what);
+/* Locks the device; one that was lost is not locked, and that is reported. */
+noc_status noc_vk_enter(vk_device *d) NOC_MUST_USE;
 noc_status noc_vk_device_create(const noc_device_params *params, int number, noc_log *log, void **device);
 void noc_vk_device_destroy(void *device);
 
@@ -318,6 +334,9 @@ void noc_vk_device_destroy(void *device);
 noc_status noc_vk_make_buffer(vk_device *d, VkDeviceSize bytes, VkBufferUsageFlags usage, vk_place place,
                               const char *what, vk_buffer *b);
 void noc_vk_free_buffer(vk_device *d, vk_buffer *b); /* an empty one is allowed; no command in flight may use it */
+/* Reports what needs more bytes than the device has free, once so many are given back. Of less than 64 MB the driver is
+ * the judge: what it tells is an estimate. */
+noc_status noc_vk_check_room(vk_device *d, VkDeviceSize bytes, VkDeviceSize given_back, const char *what);
 noc_status noc_vk_memory_create(vk_device *d);
 void noc_vk_memory_destroy(vk_device *d);
 /* Commands that come after all that was submitted before, and before what is submitted later; the device is locked.
@@ -326,6 +345,8 @@ noc_status noc_vk_open_upload(vk_device *d, VkCommandBuffer *commands);
 noc_status noc_vk_write(vk_device *d, const vk_buffer *to, VkDeviceSize at, const void *data, size_t bytes);
 noc_status noc_vk_submit_upload(vk_device *d); /* nothing is open: nothing happens */
 noc_status noc_vk_wait_idle(vk_device *d);     /* submits what is open, too */
+/* The same before things are freed, as well as it can be done: what fails is not reported, and for nobody to see. */
+void noc_vk_settle(vk_device *d);
 /* Waits for all that was submitted, and copies. */
 noc_status noc_vk_read(vk_device *d, const vk_buffer *from, VkDeviceSize at, void *data, size_t bytes);
 /* Writes of all commands before are seen by all commands after. */
@@ -380,7 +401,15 @@ noc_status noc_vk_fit_buffer(vk_view *v, size_t bytes, const char *what, vk_buff
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
 /* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
 noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
+
+/* mean.c */
+/* The frame just submitted made the mean one of so many frames, 1: a new one. Reads it now and then. */
+noc_status noc_vk_note_mean(vk_view *v, uint64_t frames);
+/* Brings v->mean to the device's mean. Where the device was lost it is what was read last, if that is of this mean. */
+noc_status noc_vk_read_mean(vk_view *v);
+void noc_vk_free_mean(vk_view *v);
 noc_status noc_vk_read_picture(void *view, noc_image *image);
+bool noc_vk_lost(void *view, uint64_t *frames);
 
 /* lists.c */
 /* Returns all hierarchies as shaders read them, NULL where memory is refused. */
@@ -418,7 +447,7 @@ void noc_vk_clear_views(vk_view *v, VkCommandBuffer commands);
 /* The frame is submitted: waits for it and keeps its views. past: as it was while the frame was made. */
 noc_status noc_vk_keep_views(vk_view *v, const noc_frame *frame, const noc_past *past);
 void noc_vk_views_free(vk_view *v);
-bool noc_vk_read_aov(void *view, noc_aov aov, float *value);
+noc_status noc_vk_read_aov(void *view, noc_aov aov, float *value);
 void noc_vk_rows(void *view, const frame_camera *camera, const noc_frame_rows *rows);
 
 /* frame.c */

@@ -48,6 +48,40 @@ static noc_status fill(vk_world *w, vk_array *a, const void *data, size_t bytes,
 
 static const noc_range nothing = { 0, 0 };
 
+enum { VK_ARRAYS = 20 };
+static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
+    vk_array *const all[] = { &w->positions,
+                              &w->indices,
+                              &w->triangle_material,
+                              &w->triangle_light,
+                              &w->materials,
+                              &w->lights,
+                              &w->profiles,
+                              &w->texels,
+                              &w->image_places,
+                              &w->image_corners,
+                              &w->instances,
+                              &w->instance_lights,
+                              &w->backs,
+                              &w->backdrop,
+                              &w->environment,
+                              &w->environment_slots,
+                              &w->environment_sines,
+                              &w->alias,
+                              &w->tree,
+                              &w->clusters };
+    _Static_assert(NOC_COUNT(all) == VK_ARRAYS, "all arrays");
+    memcpy(out, all, sizeof(all));
+}
+
+/* An upload failed: what arrays hold is not known. Those that are filled next are filled from their beginning. */
+static void forget_filled(vk_world *w) {
+    vk_array *arrays[VK_ARRAYS];
+    arrays_of(w, arrays);
+    for (size_t i = 0; i < VK_ARRAYS; i++)
+        arrays[i]->filled = 0;
+}
+
 /* ---- geometry ---- */
 
 /* Triangles and vertices that commits after version `made` filled. */
@@ -221,6 +255,10 @@ static noc_status follow_shape(vk_world *w) {
         return status;
     noc_placings_follow(&w->placings, w->scene);
     noc_ray_scale_follow(w->scene, &w->scale);
+    return NOC_OK;
+}
+
+static noc_status fill_backs(vk_world *w) {
     size_t bytes = w->placings.back.len * sizeof(*w->placings.back.data);
     return bytes ? fill(w, &w->backs, w->placings.back.data, bytes, 0, bytes, 0, "instances") : NOC_OK;
 }
@@ -232,10 +270,14 @@ noc_status noc_vk_world_follow(vk_world *w) {
     noc_status status = follow_arrays(w);
     if (status == NOC_OK && (!w->filled || w->placings.shape != noc_scene_shape(now)))
         status = follow_shape(w);
+    if (status == NOC_OK && (!w->filled || noc_scene_shape(&w->seen) != noc_scene_shape(now)))
+        status = fill_backs(w);
     if (status == NOC_OK)
         status = noc_vk_submit_upload(w->device);
-    if (status != NOC_OK)
+    if (status != NOC_OK) {
+        forget_filled(w);
         return status;
+    }
     w->seen = *now;
     w->filled = true;
     return NOC_OK;
@@ -268,6 +310,7 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
     noc_status status = NOC_OK;
     if (!memcmp(&key, &w->drawn_from, sizeof(key)))
         return NOC_OK;
+    w->drawn_from = (vk_sources_key){ 0 }; /* until all is there */
     if (sources->alias && sources->alias->count)
         status = fill_alias(w, &w->alias, sources->alias);
     if (status == NOC_OK && sources->tree)
@@ -298,31 +341,13 @@ void noc_vk_world_destroy(void *world) {
     if (!w)
         return;
     vk_device *d = w->device;
-    vk_array *const arrays[] = { &w->positions,
-                                 &w->indices,
-                                 &w->triangle_material,
-                                 &w->triangle_light,
-                                 &w->materials,
-                                 &w->lights,
-                                 &w->profiles,
-                                 &w->texels,
-                                 &w->image_places,
-                                 &w->image_corners,
-                                 &w->instances,
-                                 &w->instance_lights,
-                                 &w->backs,
-                                 &w->backdrop,
-                                 &w->environment,
-                                 &w->environment_slots,
-                                 &w->environment_sines,
-                                 &w->alias,
-                                 &w->tree,
-                                 &w->clusters };
+    vk_array *arrays[VK_ARRAYS];
+    arrays_of(w, arrays);
     noc_light_set_destroy(w->lights_set);
     noc_vk_forget_host_world(w);
     pthread_mutex_lock(&d->lock);
-    vkDeviceWaitIdle(d->device);
-    for (size_t i = 0; i < NOC_COUNT(arrays); i++)
+    noc_vk_settle(d);
+    for (size_t i = 0; i < VK_ARRAYS; i++)
         free_array(d, arrays[i]);
     noc_vk_structure_destroy(w);
     noc_placings_free(&w->placings);
@@ -337,8 +362,12 @@ noc_status noc_vk_world_create(void *device, const noc_scene *scene, void **worl
     if (!w)
         return noc_no_memory(d->log, "world");
     *w = (vk_world){ .device = d, .scene = scene, .log = d->log };
-    pthread_mutex_lock(&d->lock);
-    noc_status status = noc_vk_world_follow(w);
+    noc_status status = noc_vk_enter(d);
+    if (status != NOC_OK) {
+        free(w);
+        return status;
+    }
+    status = noc_vk_world_follow(w);
     if (status == NOC_OK)
         status = noc_vk_wait_idle(d);
     pthread_mutex_unlock(&d->lock);

@@ -1,0 +1,90 @@
+/* A small scene with something of all that a shader reads. */
+#ifndef NOC_TEST_ALL_KINDS_H
+#define NOC_TEST_ALL_KINDS_H
+
+#include "../light/profiles.h"
+#include "../render/rooms.h"
+
+#include <nocturne/nocturne.h>
+
+enum { SIDE = 48 };
+
+static inline int chequers(noc_scene *scene) {
+    static unsigned char rgb[3 * 32 * 32];
+    for (size_t i = 0; i < sizeof(rgb); i++)
+        rgb[i] = (unsigned char)((i * 37 + i / 96 * 11) % 200 + 30);
+    return noc_scene_add_texture(scene, &(noc_texture){ 32, 32, rgb, .wrap = NOC_WRAP_MIRROR });
+}
+
+/* A square in the x-z plane of a model (0: the world), with places in an image or without: then it shows none. */
+static inline void add_board(noc_scene *scene, int texture, int model, double size, bool placed) {
+    noc_material m = { .albedo = { 0.9f, 0.8f, 0.7f }, .roughness = 0.4f, .f0 = 0.04f, .texture = texture };
+    const double y = placed ? 0 : 1, xyz[] = { -size, y, 0, size, y, 0, size, y, 2 * size, -size, y, 2 * size };
+    const float uv[] = { 0, 0, 3, 0, 3, 3, 0, 3 };
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = noc_scene_add_material(scene, &m),
+                      .model = model,
+                      .uv = placed ? uv : NULL };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+}
+
+static inline noc_image *bright_map(void) {
+    noc_image *map = noc_image_create(32, 16, NULL);
+    assert_non_null(map);
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        map->rgb[i] = i % 96 < 12 ? 5.0f : 0.1f + 0.01f * (float)(i % 7);
+    return map;
+}
+
+/* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles. */
+static inline noc_scene *all_kinds(int *car) {
+    noc_scene *s = noc_scene_create(NULL);
+    int texture = chequers(s), profiles = add_test_profiles(s);
+    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { .2f, .2f, .25f }, .f0 = .05f, .roughness = .3f });
+    add_floor(s, wet, 0, 0, 0, 12);
+    add_board(s, texture, 0, 3, true);
+    add_board(s, texture, 0, 4, false); /* behind: its upper edge is seen */
+    int model = noc_scene_add_model(s, "car");
+    int groups[2] = { noc_scene_add_group(s, "left"), noc_scene_add_group(s, "right") };
+    add_board(s, texture, model, 0.5, true);
+    noc_light head = { .kind = NOC_LIGHT_DISC,
+                       .position = { 0, -0.1, 1.2 },
+                       .direction = { 0, -1, -0.3 },
+                       .radius = 0.1,
+                       .emission = { 3000, 2500, 2000 },
+                       .model = model };
+    assert_true(noc_scene_add_light(s, &head) >= 0);
+    for (int i = 0; i < 60; i++) {
+        noc_light l = crowd_light(i, -2);
+        l.group = i % 3 ? groups[i % 3 - 1] : 0;
+        if (l.kind == NOC_LIGHT_SPHERE) {
+            l.profile = profiles + i % TEST_PROFILES;
+            l.direction[1] = 0;
+            l.direction[2] = -1;
+        }
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    for (int i = 0; i < 3; i++) {
+        noc_instance in = { model, { 1.5, 0, 0, -4 + 4 * i, 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
+        int index = noc_scene_add_instance(s, &in);
+        assert_true(index >= 0);
+        *car = index;
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static inline noc_render_params all_kinds_params(noc_method method, bool map) {
+    noc_render_params p = noc_render_default_params();
+    p.width = p.height = SIDE;
+    p.method = method;
+    p.candidates = NOC_CANDIDATES_UNIFORM;
+    p.environment_light = map;
+    p.environment_rotation = 50;
+    return p;
+}
+
+#endif
