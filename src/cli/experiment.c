@@ -70,17 +70,17 @@ static void note(void *user, const char *text) {
     fflush(stdout);
 }
 
-static void tell_interruption(const noc_lab_state *state) {
+static void tell_part(const char *why, const noc_lab_state *state) {
     char rows[64], frames[64];
     noc_text_many(rows, state->rows, "row");
     noc_text_many(frames, (uint64_t)state->reference_lost, "frame");
     if (state->reference_lost)
         cli_error(
-            "interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s "
-            "of %d that were there are lost",
-            rows, state->folder, frames, state->reference_frames);
+            "%s: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s of %d "
+            "that were there are lost",
+            why, rows, state->folder, frames, state->reference_frames);
     else
-        cli_error("interrupted: %s in %s/results.csv; the same command goes on there", rows, state->folder);
+        cli_error("%s: %s in %s/results.csv; the same command goes on there", why, rows, state->folder);
 }
 
 static int work(const experiment_args *args, noc_lab *lab) {
@@ -90,9 +90,11 @@ static int work(const experiment_args *args, noc_lab *lab) {
     cli_progress_clear();
     noc_lab_get_state(lab, &state);
     if (status == NOC_ERR_CANCELLED && cli_interrupted()) {
-        tell_interruption(&state);
+        tell_part("interrupted", &state);
         return CLI_INTERRUPTED + cli_interrupted();
     }
+    if (status && state.rows_made)
+        tell_part("stopped", &state);
     status = status ? status : noc_lab_write_report(lab);
     if (!status && !args->common.quiet)
         printf("%s/report.md: %s, %zu of them made now\n", state.folder, noc_text_many(rows, state.rows, "row"),

@@ -258,6 +258,43 @@ noc_status cli_smooth(render_job *job) {
     return job->smoothed || !job->smoother ? NOC_OK : NOC_ERR_MEMORY;
 }
 
+/* Frames in the mean that can be read: fewer than were rendered, where the device was lost. */
+static int frames_left(const render_job *job) {
+    noc_frame_stats stats = { 0 };
+    if (job->frames)
+        noc_view_get_stats(job->view, &stats);
+    return stats.frames < (uint64_t)job->frames ? (int)stats.frames : job->frames;
+}
+
+/* Writes the picture of all frames that can be read. Where the device is lost over it, those that are left are written,
+ * and *failed is set. */
+static noc_status save(render_job *job, bool *failed) {
+    job->averaged = *failed ? frames_left(job) : job->frames;
+    if (!job->averaged)
+        return NOC_OK;
+    noc_status status = cli_write_picture(job);
+    int left = status ? frames_left(job) : 0;
+    if (!left || left == job->averaged)
+        return status;
+    *failed = true;
+    job->averaged = left;
+    return cli_write_picture(job);
+}
+
+/* Tells what there is of a picture that was not finished. */
+static void tell_part(const render_job *job, const char *why) {
+    const render_args *args = job->args;
+    char text[64];
+    if (!job->averaged && !job->frames)
+        cli_error("%s: no frame was complete, nothing was saved", why);
+    else if (!job->averaged)
+        cli_error("%s: nothing is left of %s", why, noc_text_many(text, (uint64_t)job->frames, "frame"));
+    else if (args->time > 0)
+        cli_error("%s: saved %s to %s", why, noc_text_many(text, (uint64_t)job->averaged, "frame"), args->output);
+    else
+        cli_error("%s: saved %d of %d frames to %s", why, job->averaged, args->frames, args->output);
+}
+
 /* One picture of all frames. */
 static int draw(render_job *job) {
     render_args *args = job->args;
@@ -272,27 +309,25 @@ static int draw(render_job *job) {
     if (!status && !cli_interrupted())
         status = render_frames(job);
     cli_nothing_to_keep(false);
-    if (cli_is_failure(status))
+    bool failed = cli_is_failure(status);
+    if (failed && !job->frames)
         return CLI_FAILURE;
-    char text[64];
-    int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
-    if (!job->frames) {
-        cli_error("interrupted: no frame was complete, nothing was saved");
+    job->file = args->output;
+    if (save(job, &failed))
+        return CLI_FAILURE;
+    int ending = failed ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+    if (!job->averaged) {
+        tell_part(job, failed ? "stopped" : "interrupted");
         return ending;
     }
-    job->file = args->output;
-    job->averaged = job->frames;
-    if (cli_write_picture(job) ||
-        (args->influence_obj && noc_view_write_influence(job->view, &args->render, args->influence_obj)))
+    if (!failed && args->influence_obj && noc_view_write_influence(job->view, &args->render, args->influence_obj))
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */
     if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor))
         return CLI_FAILURE;
-    if (ending && args->time > 0)
-        cli_error("interrupted: saved %s to %s", noc_text_many(text, (uint64_t)job->frames, "frame"), args->output);
-    else if (ending)
-        cli_error("interrupted: saved %d of %d frames to %s", job->frames, args->frames, args->output);
+    if (ending)
+        tell_part(job, failed ? "stopped" : "interrupted");
     if (!args->common.quiet)
         cli_print_summary(job);
     if (args->stats)
