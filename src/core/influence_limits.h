@@ -5,7 +5,8 @@
 
 #include "core/dialect.h"
 
-#define INFLUENCE_SETS 32u /* of a tile at most */
+#define INFLUENCE_SETS 32u /* numbers of sets, of a tile */
+#define CUT_SIXTEENS 16u   /* of a tile at most (core/influence_cut.h), and so many sets */
 
 /* Sets that so many times 16 pixels share which ask as one. */
 FN1 u1 influence_sets(u1 sixteens) { return minu1((sixteens + 3u) / 4u, 4u); }

@@ -1,78 +1,30 @@
 /* Candidates from influence volumes, for the pixels of a tile 16 at a time: those that ask as one take turns with sets
  * of samples that they share (core/influence_draw.h), and what is left of the groups has a set for each 16 pixels. */
 #include "backend/cpu/cpu.h"
-#include "core/influence_limits.h"
+#include "backend/cpu/lanes_tmpl.h"
+#include "core/influence_cut.h"
 #include "core/presample_limits.h"
 
-enum { TILE_PIXELS = TILE_BLOCKS * TILE_BLOCKS * BLOCK, MOST_SIXTEENS = 2 * TILE_BLOCKS * TILE_BLOCKS };
-_Static_assert(MOST_SIXTEENS <= (int)INFLUENCE_SETS, "sets of a tile have numbers of their own");
+_Static_assert((int)CUT_SIXTEENS == TILE_BLOCKS * TILE_BLOCKS && CUT_SIXTEENS <= INFLUENCE_SETS,
+               "sets of a tile have numbers of their own");
 
-/* Up to 16 pixels: a block, or some of several blocks. */
-typedef struct sixteen {
-    uint16_t group; /* of all of them, or MIXED */
-    uint8_t block;  /* or SEVERAL, and then: */
-    uint8_t count;
-    uint8_t pixel[BLOCK]; /* block * 16 + lane */
-} sixteen;
-enum { MIXED = 0xffff, SEVERAL = 0xff };
+/* ---- core's bridges: pixels in sixteens ---- */
 
-/* The group of all of these lanes, or MIXED. */
-static uint16_t group_of(const uint16_t of[BLOCK], uint32_t lanes) {
-    uint16_t group = of[__builtin_ctz(lanes)];
-    for (; lanes; lanes &= lanes - 1)
-        if (of[__builtin_ctz(lanes)] != group)
-            return MIXED;
-    return group;
-}
+typedef struct influence_cut {
+    const uint32_t *lanes; /* of each block, that see a surface */
+    influence_sixteen sixteen[CUT_SIXTEENS];
+    uint16_t place[2 + NOC_QUERY_BLOCKS * NOC_QUERY_POINTS];
+    uint8_t pixel[NOC_QUERY_BLOCKS * NOC_QUERY_POINTS];
+} influence_cut;
 
-/* Pixels of blocks whose pixels do not ask as one, by group; returns how many. */
-static uint32_t sort_pixels(const noc_found *f, const tile_points *p, uint32_t mixed, uint8_t sorted[TILE_PIXELS]) {
-    uint16_t at[NOC_COUNT(f->group) + 1] = { 0 };
-    for (uint32_t blocks = mixed; blocks; blocks &= blocks - 1) {
-        int i = __builtin_ctz(blocks);
-        for (uint32_t bits = p->lanes[i]; bits; bits &= bits - 1)
-            at[f->of[i][__builtin_ctz(bits)] + 1]++;
-    }
-    for (int k = 0; k < f->groups; k++)
-        at[k + 1] = (uint16_t)(at[k + 1] + at[k]);
-    for (uint32_t blocks = mixed; blocks; blocks &= blocks - 1) {
-        int i = __builtin_ctz(blocks);
-        for (uint32_t bits = p->lanes[i]; bits; bits &= bits - 1)
-            sorted[at[f->of[i][__builtin_ctz(bits)]]++] = (uint8_t)(i * BLOCK + __builtin_ctz(bits));
-    }
-    return at[f->groups ? f->groups - 1 : 0];
-}
-
-/* All pixels of a tile that see a surface, those of a group one after the other; returns how many sixteens. */
-static int cut_tile(const noc_found *f, const tile_points *p, sixteen out[MOST_SIXTEENS]) {
-    uint8_t sorted[TILE_PIXELS];
-    uint32_t mixed = 0;
-    int n = 0;
-    for (int i = 0; i < p->count; i++) {
-        uint16_t group = p->lanes[i] ? group_of(f->of[i], p->lanes[i]) : 0;
-        if (group == MIXED)
-            mixed |= 1u << i;
-        else if (group)
-            out[n++] = (sixteen){ .group = group, .block = (uint8_t)i };
-    }
-    uint32_t left = sort_pixels(f, p, mixed, sorted);
-    for (uint32_t first = 0; first < left; first += BLOCK) {
-        sixteen *s = &out[n++];
-        *s = (sixteen){ .block = SEVERAL, .count = (uint8_t)NOC_MIN(left - first, (uint32_t)BLOCK) };
-        memcpy(s->pixel, sorted + first, s->count);
-        uint8_t a = s->pixel[0], b = s->pixel[s->count - 1];
-        bool one = f->of[a / BLOCK][a % BLOCK] == f->of[b / BLOCK][b % BLOCK];
-        s->group = one ? f->of[a / BLOCK][a % BLOCK] : MIXED;
-    }
-    for (int i = 1; i < n; i++) { /* few, and mostly in order */
-        sixteen s = out[i];
-        int k = i;
-        for (; k > 0 && out[k - 1].group > s.group; k--)
-            out[k] = out[k - 1];
-        out[k] = s;
-    }
-    return n;
-}
+FN u1 cut_lanes(CTX u1 block) { return ctx->at.cut->lanes[block]; }
+FN u1 cut_group(CTX u1 block, u1 lane) { return ctx->at.volumes->of[block][lane]; }
+FN void cut_place_store(CTX u1 group, u1 place) { ctx->at.cut->place[group] = (uint16_t)place; }
+FN u1 cut_place(CTX u1 group) { return ctx->at.cut->place[group]; }
+FN void cut_pixel_store(CTX u1 place, u1 pixel) { ctx->at.cut->pixel[place] = (uint8_t)pixel; }
+FN u1 cut_pixel(CTX u1 place) { return ctx->at.cut->pixel[place]; }
+FN void sixteen_store(CTX u1 i, influence_sixteen s) { ctx->at.cut->sixteen[i] = s; }
+FN influence_sixteen sixteen_load(CTX u1 i) { return ctx->at.cut->sixteen[i]; }
 
 /* One lane of an array of 16 a value to a lane of another. */
 static void copy_lane(void *to, int to_lane, const void *from, int from_lane, size_t bytes) {
@@ -86,22 +38,26 @@ typedef struct drawing {
     worker *w;
     const tile_points *p;
     int m;
-    uint32_t number; /* of the tile's next set */
+    uint32_t number; /* of the tile's first set */
+    const influence_cut *cut;
 } drawing;
 
-static void make_set(drawing *d, const sixteen *s) {
+/* Makes the set of this sixteen, which is the first of those that have it. */
+static void make_set(const drawing *d, const influence_sixteen *s) {
     const noc_found *found = &d->w->picks->found;
+    const uint8_t *pixel = d->cut->pixel + s->first;
+    uint32_t number = d->number + s->set;
     uint16_t of[BLOCK] = { 0 };
-    for (int l = 0; l < BLOCK; l++)
-        if (s->group != MIXED)
-            of[l] = s->group;
+    for (uint32_t l = 0; l < BLOCK; l++)
+        if (s->group != CUT_MIXED)
+            of[l] = (uint16_t)s->group;
         else if (l < s->count)
-            of[l] = found->of[s->pixel[l] / BLOCK][s->pixel[l] % BLOCK];
+            of[l] = found->of[pixel[l] / BLOCK][pixel[l] % BLOCK];
     const stage_run *run = d->run;
     const frame_constants *f = run->ctx.frame;
-    size_t first = (size_t)noc_cpu_shared_draws(run) * presample_subset(f->seed, d->number, f->index, run->s->subsets);
-    run->k->influence_draw(&run->ctx, found, of, d->number++, d->m, run->s->samples + first,
-                           run->s->sample_volumes + first, d->w->picks->set);
+    size_t first = (size_t)noc_cpu_shared_draws(run) * presample_subset(f->seed, number, f->index, run->s->subsets);
+    run->k->influence_draw(&run->ctx, found, of, number, d->m, run->s->samples + first, run->s->sample_volumes + first,
+                           d->w->picks->set);
 }
 
 /* How often the light that a lane chose is expected among its candidates. */
@@ -113,13 +69,13 @@ static void note_density(const drawing *d, size_t block, int to, int from, const
             density[block][to] = (float)d->m / set[i].inverse[from];
 }
 
-static void choose(const drawing *d, const sixteen *s) {
+static void choose(const drawing *d, const influence_sixteen *s) {
     const stage_run *run = d->run;
     const tile_points *p = d->p;
     rblock *target = run->s->b.r[run->stage->target], chosen;
     uint32_t pixel[BLOCK], of_block[BLOCK];
     float(*weighed)[BLOCK] = d->w->shares->weighed;
-    if (s->block != SEVERAL) {
+    if (s->block != CUT_SEVERAL) {
         const tile_block *b = &p->block[s->block];
         noc_cpu_pixels(run, b, pixel);
         run->k->presampled(&run->ctx, p->g[s->block], p->lanes[s->block], pixel, d->m, d->w->picks->set, weighed,
@@ -128,35 +84,59 @@ static void choose(const drawing *d, const sixteen *s) {
             note_density(d, b->at, l, l, &target[b->at]);
         return;
     }
+    const uint8_t *from_pixel = d->cut->pixel + s->first;
+    int count = (int)s->count;
     gblock g;
     for (int k = 0; k < BLOCK; k++) {
-        int from = s->pixel[NOC_MIN(k, s->count - 1)], l = from % BLOCK;
+        int from = from_pixel[NOC_MIN(k, count - 1)], l = from % BLOCK;
         copy_lane(&g, k, p->g[from / BLOCK], l, sizeof(g));
         noc_cpu_pixels(run, &p->block[from / BLOCK], of_block);
         pixel[k] = of_block[l];
     }
-    run->k->presampled(&run->ctx, &g, (1u << s->count) - 1, pixel, d->m, d->w->picks->set, weighed, &chosen);
-    for (int k = 0; k < s->count; k++) {
-        size_t at = p->block[s->pixel[k] / BLOCK].at;
-        copy_lane(&target[at], s->pixel[k] % BLOCK, &chosen, k, sizeof(chosen));
-        note_density(d, at, s->pixel[k] % BLOCK, k, &chosen);
+    run->k->presampled(&run->ctx, &g, (1u << count) - 1, pixel, d->m, d->w->picks->set, weighed, &chosen);
+    for (int k = 0; k < count; k++) {
+        size_t at = p->block[from_pixel[k] / BLOCK].at;
+        copy_lane(&target[at], from_pixel[k] % BLOCK, &chosen, k, sizeof(chosen));
+        note_density(d, at, from_pixel[k] % BLOCK, k, &chosen);
     }
 }
 
+/* Cuts the tile; returns how many sixteens there are. */
+static uint32_t cut(const drawing *d, influence_cut *out) {
+    noc_found *found = &d->w->picks->found;
+    struct core_context ctx = d->run->ctx;
+    if (!ctx.light_count || found->no_memory)
+        return 0;
+    ctx.at.volumes = found;
+    ctx.at.cut = out;
+    out->lanes = d->p->lanes;
+    uint32_t n = cut_tile(&ctx, (u1)d->p->count, (u1)found->groups);
+    cut_sets(&ctx, n);
+    return n;
+}
+
+/* Pixels that see no surface have no sample. */
+static void clear_reservoirs(const drawing *d) {
+    rblock none;
+    for (int l = 0; l < BLOCK; l++)
+        reservoir_store(&none, l, reservoir_empty());
+    for (int i = 0; i < d->p->count; i++)
+        d->run->s->b.r[d->run->stage->target][d->p->block[i].at] = none;
+}
+
 void noc_cpu_draw_influence(const stage_run *run, worker *w, const tile_points *p, uint32_t number) {
-    sixteen all[MOST_SIXTEENS];
-    drawing d = { run, w, p, run->frame->plan->candidate_count, number * INFLUENCE_SETS };
-    for (int i = 0; i < p->count; i++) /* pixels that see no surface */
-        memset(&run->s->b.r[run->stage->target][p->block[i].at], 0, sizeof(rblock));
-    int n = run->ctx.light_count && !w->picks->found.no_memory ? cut_tile(&w->picks->found, p, all) : 0;
-    for (int first = 0, end; first < n; first = end) {
-        for (end = first + 1; all[first].group != MIXED && end < n && all[end].group == all[first].group;)
-            end++;
-        int sets = (int)influence_sets((u1)(end - first));
-        for (int k = 0; k < sets; k++) {
-            make_set(&d, &all[first + k]);
-            for (int i = first + k; i < end; i += sets)
-                choose(&d, &all[i]);
-        }
+    influence_cut pixels;
+    const drawing d = { run, w, p, run->frame->plan->candidate_count, number * INFLUENCE_SETS, &pixels };
+    clear_reservoirs(&d);
+    uint32_t n = cut(&d, &pixels);
+    for (uint32_t i = 0, sets = 0; i < n; i++) {
+        const influence_sixteen *s = &pixels.sixteen[i];
+        if (s->set < sets)
+            continue;
+        make_set(&d, s);
+        sets++;
+        for (uint32_t k = i; k < n && pixels.sixteen[k].group == s->group; k++)
+            if (pixels.sixteen[k].set == s->set)
+                choose(&d, &pixels.sixteen[k]);
     }
 }

@@ -69,6 +69,7 @@ typedef struct core_cursors {
     const struct ray_draw *found;
     const float *bright;          /* of the picture's blocks */
     noc_found *volumes;           /* of the tile: what its points find among influence volumes */
+    struct influence_cut *cut;    /* and its pixels in sixteens: influence.c */
     const pick_block *picks;      /* of the block */
     const presample_row *samples; /* of the block: its subset */
     float (*weighed)[BLOCK];      /* and sums of their weights */
