@@ -42,6 +42,17 @@ FN u32 influence_from_list(CTX influence_asked a, u32 bits, u32 n_l) {
     return id;
 }
 
+/* The sample at that lane of row `row` of a set, drawn from what the lane's points list. key: of the set; share: an
+ * even share of all of its samples from lists (presample_share); inverse: 1 / pmf of what is listed. */
+FN presample_pick influence_draw(CTX influence_asked a, u1 key, u1 row, u32 lane, u1 share, u32 n_l, real inverse) {
+    u32 j = presample_at(key, row, lane);
+    presample_pick k;
+    k.light = influence_from_list(PASS a, presample_bits(key, j, share), n_l);
+    k.place = presample_place(key, j);
+    k.inverse = inverse;
+    return k;
+}
+
 /* Does the point list the lights of that volume, v of that influence_turn? strongest: of those that hold it the ones
  * that give it `least`. */
 FN mask influence_lists(CTX u32 volume, influence v, real turn, influence_asked a, real scale, b1 strongest) {

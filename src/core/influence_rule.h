@@ -65,15 +65,19 @@ FN1 rule_range rule_from(f1 least) {
     return r;
 }
 
-/* Empties the bins. */
-FN1 rule_range rule_begin(CTX f1 least) {
+FN1 rule_bin rule_bin_empty(void) {
     rule_bin none;
     none.lights = 0.0f;
     none.e = 0.0f;
     none.e2 = 0.0f;
     none.unused = 0.0f;
+    return none;
+}
+
+/* Empties the bins. */
+FN1 rule_range rule_begin(CTX f1 least) {
     for (u1 i = 0u; i < U32(RULE_BINS); i++)
-        rule_bin_store(PASS i, none);
+        rule_bin_store(PASS i, rule_bin_empty());
     return rule_from(least);
 }
 
@@ -86,16 +90,20 @@ FN1 u1 rule_place(rule_range r, f1 e) {
     return place;
 }
 
-/* Lights that give e lux each. */
-FN1 void rule_add(CTX rule_range r, f1 lights, f1 e) {
-    u1 i = rule_place(r, e);
-    rule_bin bin = rule_bin_load(PASS i);
+/* A bin with so many lights more that give e lux each. */
+FN1 rule_bin rule_bin_add(rule_bin bin, f1 lights, f1 e) {
     EXACT f1 all = lights * e;
     EXACT f1 squares = all * e;
     bin.lights = bin.lights + lights;
     bin.e = bin.e + all;
     bin.e2 = bin.e2 + squares;
-    rule_bin_store(PASS i, bin);
+    return bin;
+}
+
+/* Lights that give e lux each. */
+FN1 void rule_add(CTX rule_range r, f1 lights, f1 e) {
+    u1 i = rule_place(r, e);
+    rule_bin_store(PASS i, rule_bin_add(rule_bin_load(PASS i), lights, e));
 }
 
 /* The least e of bin i. */

@@ -207,12 +207,11 @@ static void draw_influence(const struct core_context *frame, const noc_found *f,
         real in = influence_inverse(q.count > KU(0u), q, all, m, every);
         real out = influence_inverse(mload(0, l), q, all, m, every);
         for (int i = 0; i < listed; i++) {
-            u32 j = presample_at(key, (u1)i, lane_numbers(l));
-            u32 id = influence_from_list(ctx, q, presample_bits(key, j, share), all);
-            light_prefetch((const float *)ctx->lights, id);
-            ustore(rows[i].light + l, id);
-            ustore(rows[i].place + l, presample_place(key, j));
-            rstore(rows[i].inverse + l, in);
+            presample_pick k = influence_draw(ctx, q, key, (u1)i, lane_numbers(l), share, all, in);
+            light_prefetch((const float *)ctx->lights, k.light);
+            ustore(rows[i].light + l, k.light);
+            ustore(rows[i].place + l, k.place);
+            rstore(rows[i].inverse + l, k.inverse);
         }
         weigh_uniform(ctx, q, &f->group[0].query, l, m - listed, in, out, volumes, rows + listed);
     }
