@@ -51,6 +51,7 @@ typedef struct noc_influence_mean {
 enum { NOC_STEP_VOLUMES, NOC_STEP_TUNING, NOC_STEP_HIERARCHY, NOC_STEP_BOXES, NOC_INFLUENCE_STEPS };
 
 typedef struct noc_influence {
+    uint64_t number;              /* light/set: a pointer may come again once these are gone, this does not */
     uint32_t count;               /* lights of the scene, those without emission too */
     uint32_t stand;               /* of the lights in `ids` those that stand */
     uint32_t listed;              /* lights in `ids` */

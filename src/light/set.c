@@ -6,7 +6,6 @@
 typedef struct volumes {
     noc_influence *influence;
     noc_influence_params params;
-    uint64_t number; /* its own: a pointer may come again once these are gone */
     int holders;
 } volumes;
 
@@ -154,7 +153,7 @@ static noc_status follow(noc_light_set *set) {
 
 static volumes *held_volumes(noc_light_set *set, uint64_t number) {
     for (size_t i = 0; i < set->volumes.len; i++)
-        if (set->volumes.data[i].number == number)
+        if (set->volumes.data[i].influence->number == number)
             return &set->volumes.data[i];
     return NULL;
 }
@@ -198,7 +197,8 @@ static noc_status get_influence(noc_light_set *set, const noc_render_params *p, 
         noc_influence *made = noc_influence_create(set->scene, &want, set->log);
         if (!made)
             return NOC_ERR_MEMORY;
-        if (!array_push(&set->volumes, (volumes){ made, want, ++set->numbers, 0 })) {
+        made->number = ++set->numbers;
+        if (!array_push(&set->volumes, (volumes){ made, want, 0 })) {
             noc_influence_destroy(made);
             return noc_no_memory(set->log, "lights");
         }
@@ -207,7 +207,7 @@ static noc_status get_influence(noc_light_set *set, const noc_render_params *p, 
     }
     v->holders++;
     set->last = out->influence = v->influence;
-    out->volumes = v->number;
+    out->volumes = v->influence->number;
     return NOC_OK;
 }
 
@@ -216,6 +216,38 @@ static void let_go(noc_light_set *set, noc_light_sources *sources) {
     if (v)
         v->holders--;
     *sources = (noc_light_sources){ 0 };
+}
+
+void noc_light_set_note(const noc_influence *v, const noc_render_params *p, noc_light_stats *out) {
+    out->influence = p->influence > 0 ? p->influence : v->scale;
+    out->volumes = v->volume_count;
+    out->volumes_seconds = v->seconds[NOC_STEP_VOLUMES];
+    out->tuning_seconds = v->seconds[NOC_STEP_TUNING];
+    out->hierarchy_seconds = v->seconds[NOC_STEP_HIERARCHY];
+    out->boxes_seconds = v->seconds[NOC_STEP_BOXES];
+}
+
+/* The number of lights that a share of the surfaces does not exceed. */
+static uint32_t percentile(uint64_t (*count)(const void *user, uint32_t lights), const void *user, uint32_t bins,
+                           double surfaces) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < bins; i++)
+        if ((double)(sum += count(user, i)) > surfaces)
+            return i;
+    return 0;
+}
+
+void noc_light_set_note_found(uint64_t (*count)(const void *user, uint32_t lights), const void *user, uint32_t bins,
+                              noc_light_stats *out) {
+    out->surfaces = 0;
+    for (uint32_t i = 0; i < bins; i++)
+        out->surfaces += count(user, i);
+    if (!out->surfaces)
+        return;
+    double surfaces = (double)out->surfaces;
+    out->found_none = (double)count(user, 0) / surfaces;
+    out->found_median = percentile(count, user, bins, 0.5 * surfaces);
+    out->found_99 = percentile(count, user, bins, 0.99 * surfaces);
 }
 
 /* ---- what a frame asks for ---- */

@@ -51,6 +51,16 @@ noc_status noc_light_set_get(noc_light_set *set, noc_candidates candidates, cons
                              noc_light_sources *sources);
 void noc_light_set_release(noc_light_set *set, noc_light_sources *sources);
 
+/* Fills what is told of influence volumes that these parameters asked for. */
+void noc_light_set_note(const noc_influence *volumes, const noc_render_params *params, noc_light_stats *out);
+
+/* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
+enum { NOC_FOUND_MOST = 1 << 16 };
+static inline uint32_t noc_found_bins(size_t lights) { return (uint32_t)NOC_MIN(lights, (size_t)NOC_FOUND_MOST) + 1; }
+/* Fills what surfaces of a frame found; count returns how many of them found so many lights, below `bins`. */
+void noc_light_set_note_found(uint64_t (*count)(const void *user, uint32_t lights), const void *user, uint32_t bins,
+                              noc_light_stats *out);
+
 /* What directions are drawn from of the scene's map, which it must have: made when it is first asked for, and anew
  * where the map is another one. */
 noc_status noc_light_set_map(noc_light_set *set, const noc_map_light **map);

@@ -16,8 +16,6 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
-enum { FOUND_MOST = 1 << 16 };
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
 _Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK,
                "a tile's points ask together");
@@ -155,7 +153,7 @@ typedef struct cpu_view {
     const noc_map_light *map_light; /* of the last frame that was lit by the scene's map */
     noc_light_stats told;           /* of that frame's candidates and volumes */
     frame_buffers b;
-    /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
+    /* of a worker: from 0 to the number of lights; the last of NOC_FOUND_MOST + 1 counts what finds more too */
     uint32_t found_bins;
     noc_learned *learned;   /* it is of places in the scene, so it outlives the size of the picture */
     uint32_t learned_epoch; /* noc_frame.epoch that it is of */

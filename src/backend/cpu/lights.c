@@ -3,16 +3,9 @@
 
 /* Told after the frame, when other views may have had the volumes made anew. */
 static void note_volumes(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
-    const noc_influence *v = s->sources.influence;
     s->told = (noc_light_stats){ .candidates = plan->candidates };
-    if (!v)
-        return;
-    s->told.influence = p->influence > 0 ? p->influence : v->scale;
-    s->told.volumes = v->volume_count;
-    s->told.volumes_seconds = v->seconds[NOC_STEP_VOLUMES];
-    s->told.tuning_seconds = v->seconds[NOC_STEP_TUNING];
-    s->told.hierarchy_seconds = v->seconds[NOC_STEP_HIERARCHY];
-    s->told.boxes_seconds = v->seconds[NOC_STEP_BOXES];
+    if (s->sources.influence)
+        noc_light_set_note(s->sources.influence, p, &s->told);
 }
 
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
@@ -52,22 +45,14 @@ static size_t scene_bytes(const noc_scene *s) {
 }
 
 /* Surfaces of the frame that found so many lights. */
-static uint64_t surfaces_finding(const cpu_view *s, uint32_t lights) {
+static uint64_t surfaces_finding(const void *view, uint32_t lights) {
+    const cpu_view *s = view;
     uint64_t sum = 0;
     for (int i = 0; i < s->worker_count; i++) {
         const pick_pass *p = s->workers[i].picks;
         sum += p && p->found_counts ? p->found_counts[lights] : 0;
     }
     return sum;
-}
-
-/* The number of lights that a share of the surfaces does not exceed. */
-static uint32_t percentile(const cpu_view *s, uint64_t surfaces, double share) {
-    uint64_t sum = 0;
-    for (uint32_t i = 0; i < s->found_bins; i++)
-        if ((sum += surfaces_finding(s, i)) > share * (double)surfaces)
-            return i;
-    return 0;
 }
 
 void noc_cpu_light_stats(void *view, noc_light_stats *out) {
@@ -77,15 +62,8 @@ void noc_cpu_light_stats(void *view, noc_light_stats *out) {
     out->scene_bytes = scene_bytes(s->scene) + noc_cpu_rays_bytes(s->world);
     out->build_seconds = noc_light_set_seconds(s->world->lights, out->candidates);
     out->bytes = noc_light_set_bytes(s->world->lights, out->candidates);
-    if (out->candidates != NOC_CANDIDATES_INFLUENCE)
-        return;
-    for (uint32_t k = 0; k < s->found_bins; k++)
-        out->surfaces += surfaces_finding(s, k);
-    if (!out->surfaces)
-        return;
-    out->found_none = (double)surfaces_finding(s, 0) / (double)out->surfaces;
-    out->found_median = percentile(s, out->surfaces, 0.5);
-    out->found_99 = percentile(s, out->surfaces, 0.99);
+    if (out->candidates == NOC_CANDIDATES_INFLUENCE)
+        noc_light_set_note_found(surfaces_finding, s, s->found_bins, out);
 }
 
 noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes) {

@@ -48,7 +48,7 @@ static bool make_counts(worker *w, size_t bins, bool more) {
 
 noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan) {
     size_t lights = s->scene->lights.len, chunks = lights / REFERENCE_CHUNK + 1;
-    uint32_t bins = (uint32_t)NOC_MIN(lights, (size_t)FOUND_MOST) + 1;
+    uint32_t bins = noc_found_bins(lights);
     bool lists = plan->draws && plan->candidates == NOC_CANDIDATES_LISTS;
     bool found = has(plan, NOC_PASS_FIND_LIGHTS), items = has(plan, NOC_PASS_CANDIDATES_LIGHT_BVH);
     bool all = has(plan, NOC_PASS_SHADE_ALL);
