@@ -42,8 +42,6 @@ static vk_facts facts_for(const noc_render_params *p, bool map, int history, fra
                        .list_bytes = 64 << 20 };
 }
 
-static bool known(const noc_plan *plan) { return !plan->draws || plan->candidates != NOC_CANDIDATES_INFLUENCE; }
-
 /* All steps of a frame, with their barriers. */
 static void schedule(const noc_plan *plan, const vk_facts *facts, vk_steps *steps) {
     vk_hazards hazards = { 0 };
@@ -64,8 +62,6 @@ static void check_barriers(const noc_render_params *p, const noc_plan *plan, int
     facts.views = plans % 2; /* what steps gather for views has barriers, too */
     model m = { 0 };
     (void)surfaces;
-    if (!known(plan))
-        return;
     plans++;
     schedule(plan, &facts, &steps);
     for (size_t i = 0; i < steps.len; i++) {
@@ -88,7 +84,7 @@ static void check_each_barrier(const noc_render_params *p, const noc_plan *plan,
     vk_facts facts = facts_for(p, map, history, &c);
     facts.views = noticed / 16 % 2;
     (void)surfaces;
-    if (!known(plan) || p->passes != 2 || history > 0)
+    if (p->passes != 2 || history > 0)
         return;
     schedule(plan, &facts, &steps);
     for (size_t gone = 0; gone < steps.len; gone++) {
@@ -134,8 +130,6 @@ static void check_tables(const noc_render_params *p, const noc_plan *plan, int h
                    1u << VK_RESOURCE_SAMPLES | 1u << VK_RESOURCE_SCRATCH | 1u << VK_RESOURCE_OBSERVED |
                    1u << VK_RESOURCE_BRIGHT;
     (void)surfaces;
-    if (!known(plan))
-        return;
     for (int i = 0; i < plan->count; i++) {
         const noc_stage *s = &plan->stages[i];
         steps.len = 0;

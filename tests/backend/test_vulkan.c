@@ -53,6 +53,10 @@ static void plans_have_the_same_bits(void **state) {
         { "ris", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, true, 1 },
         { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER, NOC_BIAS_PAIRWISE, true, false, true, 1 },
         { "ris, light-bvh", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, NOC_BIAS_PAIRWISE, true, true, true, 1 },
+        { "ris, influence", NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, NOC_BIAS_PAIRWISE, true, true, true, 1 },
+        { "ris, influence, S_r", NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, NOC_BIAS_PAIRWISE, true, false, true, 1 },
+        { "pairwise, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, NOC_BIAS_PAIRWISE, true, true, true, 1 },
+        { "mis, influence, many", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, NOC_BIAS_MIS, true, true, true, 2 },
         { "ris, many", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, true, 1 },
         { "ris, no rays", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true, false, 1 },
         { "biased", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_BIASED, true, true, true, 1 },
@@ -88,6 +92,7 @@ static void plans_have_the_same_bits(void **state) {
         p.passes = plans[i].passes;
         p.rays = 20;
         p.draws = strstr(plans[i].name, "many") ? 200 : 32;
+        p.influence = strstr(plans[i].name, "S_r") ? 2 : 0;
         p.neighbours = strstr(plans[i].name, "20 neighbours") ? 20 : p.neighbours;
         expect_same_bits(&t, &camera, &p, p.method == NOC_METHOD_REFERENCE ? 1 : 3, plans[i].name);
     }
@@ -134,7 +139,8 @@ static void edits_have_the_same_bits(void **state) {
     } rows[] = { { "edits, pairwise", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_UNIFORM },
                  { "edits, mis", NOC_BIAS_MIS, NOC_CANDIDATES_UNIFORM },
                  { "edits, counted", NOC_BIAS_COUNTED, NOC_CANDIDATES_UNIFORM },
-                 { "edits, lists", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_LISTS } };
+                 { "edits, lists", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_LISTS },
+                 { "edits, influence", NOC_BIAS_PAIRWISE, NOC_CANDIDATES_INFLUENCE } };
     noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
     (void)state;
     if (!has_vulkan(messages))
@@ -234,6 +240,7 @@ static void views_have_the_same_bits(void **state) {
         { "ris, light-bvh, map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, true, 0 },
         { "ris, lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, 0 },
         { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false, 0 },
+        { "restir, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false, 0 },
         { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, OF_RESERVOIRS },
         { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, ~(uint32_t)OF_SURFACES },
     };
@@ -254,7 +261,8 @@ static void views_have_the_same_bits(void **state) {
         noc_render_params p = all_kinds_params(rows[row].method, rows[row].map);
         p.candidates = rows[row].candidates;
         p.rays = 20;
-        p.aovs = (ALL_VIEWS & ~rows[row].without) | (p.candidates == NOC_CANDIDATES_LISTS ? AOV(LIGHTS) : 0);
+        bool finds = p.candidates == NOC_CANDIDATES_LISTS || p.candidates == NOC_CANDIDATES_INFLUENCE;
+        p.aovs = (ALL_VIEWS & ~rows[row].without) | (finds ? AOV(LIGHTS) : 0);
         for (int f = 0; f < 4; f++) {
             noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * (f / 2), 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
             if (f == 2)
@@ -271,7 +279,19 @@ static void views_have_the_same_bits(void **state) {
     }
 }
 
-/* Over light lists, blocks of sky share work groups with blocks that see the city; scratch holds anything at first. */
+/* Sets all bits of the view's scratch. */
+static void fill_scratch(vk_view *v) {
+    size_t bytes = (size_t)v->scratch.bytes;
+    void *ones = noc_calloc(1, bytes);
+    assert_non_null(ones);
+    memset(ones, 0xff, bytes);
+    assert_int_equal(noc_vk_write(v->device, &v->scratch, 0, ones, bytes), NOC_OK);
+    assert_int_equal(noc_vk_wait_idle(v->device), NOC_OK);
+    free(ones);
+}
+
+/* Over light lists and influence volumes, blocks of sky share work groups with blocks that see the city; scratch holds
+ * anything at first. */
 static void scratch_may_hold_anything(void **state) {
     noc_scene *scene = has_vulkan(messages) ? builtin("city") : NULL;
     noc_camera camera;
@@ -284,17 +304,12 @@ static void scratch_may_hold_anything(void **state) {
     noc_render_params p = noc_render_default_params();
     p.width = 64;
     p.height = 32;
-    p.candidates = NOC_CANDIDATES_LISTS;
-    expect_same_bits(&t, &camera, &p, 1, "scratch as it was made");
-    vk_view *v = gpu_of(&t);
-    size_t bytes = (size_t)v->scratch.bytes;
-    void *ones = noc_calloc(1, bytes);
-    assert_non_null(ones);
-    memset(ones, 0xff, bytes);
-    assert_int_equal(noc_vk_write(v->device, &v->scratch, 0, ones, bytes), NOC_OK);
-    assert_int_equal(noc_vk_wait_idle(v->device), NOC_OK);
-    free(ones);
-    expect_same_bits(&t, &camera, &p, 1, "scratch of ones");
+    for (int i = 0; i < 2; i++) {
+        p.candidates = i ? NOC_CANDIDATES_INFLUENCE : NOC_CANDIDATES_LISTS;
+        expect_same_bits(&t, &camera, &p, 1, "scratch as it was");
+        fill_scratch(gpu_of(&t));
+        expect_same_bits(&t, &camera, &p, 1, "scratch of ones");
+    }
     close_twins(&t);
     noc_scene_destroy(scene);
 }

@@ -191,6 +191,7 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
     d->constants = (vk_constants){ .list_workers = 256, .share_workers = 64 };
     d->list_bytes = (size_t)256 << 20;
     d->keep_seconds = 10;
+    d->pool_most = UINT32_MAX;
     pthread_mutex_init(&d->lock, NULL);
     pthread_mutex_init(&d->host_lock, NULL);
     noc_status status = (d->pool = noc_pool_create(params->threads)) ? NOC_OK : noc_no_memory(log, "device");

@@ -1,6 +1,7 @@
 /* A frame as one command buffer: stages are recorded as their steps (schedule.h), and the frame is submitted when it is
  * complete. A frame that is dropped before that leaves nothing behind but what followed the scene. Two frames of a view
  * may be in flight; figures are those of the last finished one. */
+#include "backend/vulkan/influence_memory.h"
 #include "backend/vulkan/list_memory.h"
 #include "backend/vulkan/schedule.h"
 #include "backend/vulkan/vulkan.h"
@@ -31,6 +32,13 @@ static void take_counts(vk_view *v, vk_flight *f) {
     f->found.rays_shadow = sums[VK_COUNT_RAYS];
     f->found.dropped = v->stats.dropped + sums[VK_COUNT_DROPPED];
     v->stats = f->found;
+    if (sums[VK_COUNT_UNLISTED] && !v->crowded) {
+        v->crowded = true;
+        noc_warn(v->log,
+                 "vulkan: there is no room for the lights that reach %llu places of a picture of %d x %d: there "
+                 "candidates come from all lights, and it is noisier than it could be",
+                 (unsigned long long)sums[VK_COUNT_UNLISTED], v->b.width, v->b.height);
+    }
     if (sums[VK_COUNT_UNLEARNED] && !v->learning.told) {
         v->learning.told = true;
         noc_warn(v->log,
@@ -72,6 +80,10 @@ static int cluster_levels(const noc_light_sources *s) {
     return levels;
 }
 
+static uint32_t tile_words(const vk_view *v, const noc_plan *plan) {
+    return plan->candidates == NOC_CANDIDATES_INFLUENCE ? FOUND_WORDS : noc_vk_tile_words(cluster_levels(&v->sources));
+}
+
 static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
     return (vk_facts){ .constants = &frame->constants,
                        .history = frame->constants.flags & FRAME_HISTORY && !v->past.lost,
@@ -81,7 +93,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
-                       .tile_words = noc_vk_tile_words(cluster_levels(&v->sources)),
+                       .tile_words = tile_words(v, frame->plan),
                        .list_bytes = v->device->list_bytes,
                        .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
 }
@@ -128,6 +140,8 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .samples = v->samples.address,
         .scratch = v->scratch.address,
         .clusters = w->clusters.buffer.address,
+        .volumes = w->volumes.buffer.address,
+        .found = v->found.address,
         .learned = l->cache.address,
         .observed = l->observed.address,
         .block_bright = l->bright.address,
@@ -151,6 +165,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .blocks_y = b->blocks_y,
         .draws = (uint32_t)frame->plan->candidate_count,
         .subsets = v->subsets,
+        .subset_rows = v->subset_rows,
         .tree_root = v->sources.tree ? v->sources.tree->root : 0,
         .tree_depth = v->sources.tree ? (uint32_t)v->sources.tree->depth : 0,
         .sky_turns = facts_of(v, frame).sky ? SKY_RAYS : 0,
@@ -163,6 +178,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .list_flags = (frame->plan->learns ? LIST_LEARNS : 0) | (frame->plan->mixes ? LIST_MIXES : 0) |
                       (frame->plan->shares_rays ? LIST_SHARES : 0) |
                       (noc_stage_has(&frame->plan->stages[0], NOC_PASS_SEEN_BEFORE) ? LIST_FRESH : 0),
+        .found_bins = noc_found_bins(v->scene->lights.len),
         .list_room = l->room,
         .observed_rows = l->rows,
         .cells = l->cells,
@@ -232,7 +248,9 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     b->first_row = traces && step->band ? 0 : step->first_row;
     b->rows = step->rows ? step->rows : v->b.blocks_y;
     b->slots = v->b.blocks_x * (step->band ? step->rows : v->b.blocks_y) * BLOCK;
-    b->pixels_at = noc_vk_tiles(v->b.blocks_x) * noc_vk_tiles(b->rows) * b->tile_words;
+    uint32_t tiles = noc_vk_tiles(v->b.blocks_x) * noc_vk_tiles(b->rows);
+    b->pixels_at = tiles * b->tile_words;
+    b->pool_room = NOC_MIN(tiles * FOUND_POOL + FOUND_SPARE, v->device->pool_most);
     VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
     VkDeviceAddress address = f->constants.address + at;
     if (step->wait)
@@ -320,21 +338,29 @@ static noc_status record(vk_view *v, const noc_frame *frame, vk_steps *steps) {
 
 /* ---- a frame ---- */
 
-static noc_status refuse(const vk_view *v, const noc_frame *frame) {
-    if (frame->plan->draws && frame->plan->candidates != NOC_CANDIDATES_LISTS &&
-        frame->params->aovs & NOC_AOV_BIT(LIGHTS))
-        return noc_error(v->log, NOC_ERR_UNSUPPORTED,
-                         "vulkan: no view \"lights\" of candidates influence on this backend yet");
-    if (frame->plan->draws && frame->plan->candidates == NOC_CANDIDATES_INFLUENCE)
-        return noc_error(
-            v->log, NOC_ERR_UNSUPPORTED,
-            "vulkan: no candidates \"influence\" on this backend yet (there are lists, uniform, power and light-bvh)");
-    return NOC_OK;
+/* Rows of candidates that are drawn before the frame, from all lights. */
+static uint32_t shared_rows(const noc_frame *frame) {
+    const noc_plan *plan = frame->plan;
+    uint32_t m = plan->draws ? (uint32_t)plan->candidate_count : 0;
+    switch (plan->candidates) {
+    case NOC_CANDIDATES_UNIFORM:
+    case NOC_CANDIDATES_POWER: return m;
+    case NOC_CANDIDATES_INFLUENCE: return m - influence_listed(m, frame->constants.uniform_every);
+    default: return 0;
+    }
 }
 
-/* Returns true if blocks share the plan's candidates. */
-static bool shares(const noc_plan *plan) {
-    return plan->draws && (plan->candidates == NOC_CANDIDATES_UNIFORM || plan->candidates == NOC_CANDIDATES_POWER);
+/* What the frame's candidates are drawn from. */
+static noc_status get_sources(vk_view *v, const noc_frame *frame) {
+    v->draws = frame->plan->draws;
+    v->drawn = (noc_light_stats){ .candidates = v->draws ? frame->plan->candidates : (noc_candidates)0 };
+    if (!v->draws) {
+        noc_light_set_release(v->world->lights_set, &v->sources);
+        return NOC_OK;
+    }
+    return frame->plan->candidates == NOC_CANDIDATES_INFLUENCE
+               ? noc_vk_get_influence(v, frame)
+               : noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
 }
 
 /* Room for the rays of the plan's steps, and for scratch. */
@@ -367,17 +393,13 @@ static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
 
 /* What the frame needs of the world and of the view, before anything is recorded. */
 static noc_status prepare(vk_view *v, const noc_frame *frame) {
-    noc_status status = refuse(v, frame);
-    if (status == NOC_OK)
-        status = finish(v, &v->flights[v->flight]);
+    noc_status status = finish(v, &v->flights[v->flight]);
     if (status == NOC_OK)
         status = noc_vk_world_follow(v->world);
     if (status == NOC_OK)
         status = noc_vk_view_begin_past(v, frame->plan);
-    v->draws = frame->plan->draws;
-    v->drawn = v->draws ? frame->plan->candidates : (noc_candidates)0;
-    if (status == NOC_OK && frame->plan->draws)
-        status = noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
+    if (status == NOC_OK)
+        status = get_sources(v, frame);
     v->map_light = NULL;
     if (status == NOC_OK && frame->constants.flags & FRAME_MAP_LIGHTS)
         status = noc_light_set_map(v->world->lights_set, &v->map_light);
@@ -389,7 +411,8 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
         status = upload_receivers(v, frame);
     if (status == NOC_OK)
         status = noc_vk_begin_views(v, frame->params->aovs);
-    return status == NOC_OK && shares(frame->plan) ? noc_vk_view_fit_samples(v, frame->plan->candidate_count) : status;
+    uint32_t rows = shared_rows(frame);
+    return status == NOC_OK && rows ? noc_vk_view_fit_samples(v, rows) : status;
 }
 
 static noc_status begin(vk_view *v, const noc_frame *frame) {
@@ -409,6 +432,7 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
     v->hazards = (vk_hazards){ 0 };
     vkCmdFillBuffer(f->commands, v->counters.buffer, 0, VK_WHOLE_SIZE, 0);
     noc_vk_clear_views(v, f->commands);
+    noc_vk_clear_found(v, f->commands);
     if (frame->plan->learns)
         noc_vk_begin_learning(v, frame->epoch, f->commands);
     noc_vk_barrier(f->commands);
@@ -491,12 +515,15 @@ noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
 
 void noc_vk_light_stats(void *view, noc_light_stats *out) {
     const vk_view *v = view;
-    *out = (noc_light_stats){ .candidates = v->drawn, .lights = v->scene->lights.len };
+    *out = v->drawn;
+    out->lights = v->scene->lights.len;
     out->scene_bytes = noc_vk_world_bytes(v->world);
-    if (!v->draws)
+    if (v->draws && out->candidates == NOC_CANDIDATES_INFLUENCE)
+        noc_vk_note_found(view, out);
+    if (!v->draws || out->candidates == NOC_CANDIDATES_INFLUENCE)
         return;
-    out->build_seconds = noc_light_set_seconds(v->world->lights_set, v->drawn);
-    out->bytes = noc_light_set_bytes(v->world->lights_set, v->drawn);
+    out->build_seconds = noc_light_set_seconds(v->world->lights_set, out->candidates);
+    out->bytes = noc_light_set_bytes(v->world->lights_set, out->candidates);
 }
 
 bool noc_vk_finish(void *view) {

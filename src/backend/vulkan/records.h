@@ -20,7 +20,8 @@ struct vk_instance_record {
 #define VK_COUNT_RAYS 0
 #define VK_COUNT_DROPPED 1
 #define VK_COUNT_UNLEARNED 2 /* cells of tiles whose observations had no room */
-#define VK_COUNT_KINDS 3
+#define VK_COUNT_UNLISTED 3  /* groups of points whose lights had no room: influence */
+#define VK_COUNT_KINDS 4
 
 /* Fields of a dispatch's record: ADDRESS(type in shaders, name), then WORD(type, name). */
 #define VK_BINDING(ADDRESS, WORD)                                                                                      \
@@ -63,6 +64,8 @@ struct vk_instance_record {
     ADDRESS(SampleRows, samples)                                                                                       \
     ADDRESS(Words, scratch)  /* of a band of the picture */                                                            \
     ADDRESS(Words, clusters) /* a head of 16 words a hierarchy: shaders/list_tile.glsl */                              \
+    ADDRESS(Words, volumes)  /* influence volumes: influence_memory.h */                                               \
+    ADDRESS(Words, found)    /* surfaces by the number of lights that they found */                                    \
     ADDRESS(Words, learned)  /* the visibility cache, and the next two: list_memory.h */                               \
     ADDRESS(Words, observed)                                                                                           \
     ADDRESS(Floats, block_bright)                                                                                      \
@@ -82,8 +85,9 @@ struct vk_instance_record {
     WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
     WORD(uint32_t, slots)     /* pixels of the blocks whose rays are kept at once: rays of one slot */                 \
     WORD(uint32_t, blocks_y)                                                                                           \
-    WORD(uint32_t, draws) /* candidates a pixel */                                                                     \
-    WORD(uint32_t, subsets)                                                                                            \
+    WORD(uint32_t, draws)   /* candidates a pixel */                                                                   \
+    WORD(uint32_t, subsets) /* of candidates that are drawn before the frame, and rows of each */                      \
+    WORD(uint32_t, subset_rows)                                                                                        \
     WORD(uint32_t, alias_count)                                                                                        \
     WORD(uint32_t, tree_root)                                                                                          \
     WORD(uint32_t, tree_depth)                                                                                         \
@@ -99,8 +103,10 @@ struct vk_instance_record {
     WORD(float, share)            /* of this frame in the mean */                                                      \
     WORD(float, ray_offset)                                                                                            \
     WORD(uint32_t, tiles_x)                                                                                            \
-    WORD(uint32_t, tile_words) /* lists: of each tile in scratch; and where its pixels are there */                    \
+    WORD(uint32_t, tile_words) /* lists, influence: of each tile in scratch; and where what comes after them is */     \
     WORD(uint32_t, pixels_at)                                                                                          \
+    WORD(uint32_t, found_bins)                                                                                         \
+    WORD(uint32_t, pool_room) /* influence: lights that the pool of a band has room for */                             \
     WORD(uint32_t, list_flags)                                                                                         \
     WORD(uint32_t, list_room)     /* entries of a list at most */                                                      \
     WORD(uint32_t, observed_rows) /* that there is room for */                                                         \

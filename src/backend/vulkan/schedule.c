@@ -1,6 +1,7 @@
 /* From the passes of a stage to dispatches: see schedule.h. */
 #include "backend/vulkan/schedule.h"
 
+#include "backend/vulkan/influence_memory.h"
 #include "backend/vulkan/list_memory.h"
 #include "core/random.h"
 
@@ -22,10 +23,23 @@ static uint32_t set_bit(int set) { return R(SET) << set; }
 static bool gathers(vk_shader shader) {
     static const bool yes[VK_SHADER_COUNT] = {
 #define YES(name) [VK_SHADER_##name] = true
-        YES(primary_use), YES(place),         YES(candidates_shared), YES(candidates_tree),
-        YES(resolve_ask), YES(temporal_ask),  YES(spatial_ask),       YES(emitters),
-        YES(shade_use),   YES(reference_ask), YES(reference_use),     YES(sky_ask),
-        YES(sky_use),     YES(list_ask),      YES(list_note),         YES(list_sources),
+        YES(primary_use),
+        YES(place),
+        YES(candidates_shared),
+        YES(candidates_tree),
+        YES(resolve_ask),
+        YES(temporal_ask),
+        YES(spatial_ask),
+        YES(emitters),
+        YES(shade_use),
+        YES(reference_ask),
+        YES(reference_use),
+        YES(sky_ask),
+        YES(sky_use),
+        YES(list_ask),
+        YES(list_note),
+        YES(list_sources),
+        YES(influence_candidates),
 #undef YES
     };
     return yes[shader];
@@ -69,10 +83,15 @@ static void primary(scheduling *s) {
 }
 
 /* Candidates that blocks share are drawn once a frame, before the pass that chooses among them. */
-static void candidates_shared(scheduling *s) {
-    bool by_power = s->pass == NOC_PASS_CANDIDATES_POWER;
+static void presample(scheduling *s, noc_pass pass) {
+    bool by_power = pass == NOC_PASS_CANDIDATES_POWER;
+    s->pass = pass;
     add(s, by_power ? VK_SHADER_presample_power : VK_SHADER_presample_uniform, 0, R(SAMPLES))->domain =
         VK_DOMAIN_SUBSETS;
+}
+
+static void candidates_shared(scheduling *s) {
+    presample(s, s->pass);
     add(s, VK_SHADER_candidates_shared, R(SURFACES) | R(SAMPLES), set_bit(s->stage->target));
 }
 
@@ -212,7 +231,6 @@ static size_t list_row_words(const noc_plan *plan, const vk_facts *f) {
     return (size_t)noc_vk_tiles(f->blocks_x) * f->tile_words + (size_t)f->blocks_x * 4 * BLOCK * pixel;
 }
 
-/* Rows of blocks in a band. */
 static uint32_t list_band(const noc_plan *plan, const vk_facts *f) {
     size_t rays = (size_t)f->blocks_x * 4 * BLOCK * (size_t)list_slots(plan, f);
     size_t row = 4 * list_row_words(plan, f) + rays * (sizeof(rayblock) / BLOCK + 4);
@@ -274,15 +292,39 @@ static void shade_shared(scheduling *s) {
     add_list(s, VK_SHADER_list_shade, VK_DOMAIN_PIXELS, set_bit(s->stage->target) | R(COLOUR), R(COLOUR));
 }
 
+/* ---- influence: bands of tiles, too ---- */
+
+/* Words of scratch of a row of tiles: what its tiles know, their share of the pool, samples, and sums of weights. */
+static size_t found_row_words(const noc_plan *plan, const vk_facts *f) {
+    size_t samples = (size_t)plan->candidate_count * (CUT_SIXTEENS * DRAW_WORDS + CUT_SIXTEENS * BLOCK);
+    return noc_vk_tiles(f->blocks_x) * (FOUND_WORDS + FOUND_POOL + samples);
+}
+
+static void find_lights(scheduling *s) {
+    add_list(s, VK_SHADER_influence_groups, VK_DOMAIN_TILES, R(SURFACES), R(SCRATCH));
+    add_list(s, VK_SHADER_influence_near, VK_DOMAIN_TILES, 0, R(SCRATCH));
+    add_list(s, VK_SHADER_influence_look, VK_DOMAIN_TILES, 0, R(SCRATCH));
+    add_list(s, VK_SHADER_influence_rule, VK_DOMAIN_TILES, 0, R(SCRATCH));
+    add_list(s, VK_SHADER_influence_place, VK_DOMAIN_ONE, 0, R(SCRATCH));
+    add_list(s, VK_SHADER_influence_look, VK_DOMAIN_TILES, 0, R(SCRATCH))->first = 1;
+}
+
+static void candidates_influence(scheduling *s) {
+    add_list(s, VK_SHADER_influence_draw, VK_DOMAIN_TILES, R(SAMPLES), R(SCRATCH));
+    add_list(s, VK_SHADER_influence_candidates, VK_DOMAIN_PIXELS, R(SURFACES), R(SCRATCH) | set_bit(s->stage->target));
+}
+
 /* ---- stages ---- */
 
 static void schedule_pass(scheduling *s, noc_pass pass) {
     static void (*const passes[NOC_PASS_COUNT])(scheduling *) = {
         [NOC_PASS_PRIMARY] = primary,
+        [NOC_PASS_FIND_LIGHTS] = find_lights,
         [NOC_PASS_BUILD_LIST] = build_list,
         [NOC_PASS_CANDIDATES_UNIFORM] = candidates_shared,
         [NOC_PASS_CANDIDATES_LIST] = candidates_list,
         [NOC_PASS_CANDIDATES_POWER] = candidates_shared,
+        [NOC_PASS_CANDIDATES_INFLUENCE] = candidates_influence,
         [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_tree,
         [NOC_PASS_SEEN_BEFORE] = seen_before,
         [NOC_PASS_SHARE_RAYS] = share_rays,
@@ -303,18 +345,28 @@ static void schedule_pass(scheduling *s, noc_pass pass) {
         passes[pass](s);
 }
 
-/* The passes of a stage from number `first` on that work on what a tile's list became, band by band. Returns the number
- * of the next one. */
-static int schedule_lists(scheduling *s, int first) {
+/* Rows of blocks in a band. */
+static uint32_t band_of(const noc_plan *plan, const vk_facts *f) {
+    if (plan->candidates == NOC_CANDIDATES_LISTS)
+        return list_band(plan, f);
+    return 4 * (uint32_t)NOC_CLAMP(f->list_bytes / (4 * found_row_words(plan, f)), (size_t)1,
+                                   (size_t)noc_vk_tiles(f->blocks_y));
+}
+
+/* The passes of a stage from number `first` on that work on what a tile found or what its list became, band by band.
+ * Returns the number of the next one. */
+static int schedule_bands(scheduling *s, int first) {
     const vk_facts *f = s->facts;
-    uint32_t band = list_band(s->plan, f);
+    uint32_t band = band_of(s->plan, f);
     int end = first;
     for (int i = first; i < s->stage->count; i++) {
         noc_pass pass = s->stage->passes[i];
-        if (pass == NOC_PASS_CANDIDATES_LIST || pass == NOC_PASS_TRACE_SHARED || pass == NOC_PASS_RESAMPLE ||
-            pass == NOC_PASS_SHADE_SHARED)
+        if (pass == NOC_PASS_CANDIDATES_LIST || pass == NOC_PASS_CANDIDATES_INFLUENCE ||
+            pass == NOC_PASS_TRACE_SHARED || pass == NOC_PASS_RESAMPLE || pass == NOC_PASS_SHADE_SHARED)
             end = i + 1;
     }
+    if (s->plan->candidates == NOC_CANDIDATES_INFLUENCE && f->lights)
+        presample(s, NOC_PASS_CANDIDATES_INFLUENCE);
     for (uint32_t row = 0; row < f->blocks_y; row += band) {
         size_t from = s->steps->len;
         for (int i = first; i < end; i++)
@@ -330,8 +382,8 @@ static int schedule_lists(scheduling *s, int first) {
 bool noc_vk_schedule(const noc_plan *plan, const noc_stage *stage, const vk_facts *facts, vk_steps *steps) {
     scheduling s = { .plan = plan, .stage = stage, .facts = facts, .steps = steps };
     for (int i = 0; i < stage->count;)
-        if (stage->passes[i] == NOC_PASS_BUILD_LIST)
-            i = schedule_lists(&s, i);
+        if (stage->passes[i] == NOC_PASS_BUILD_LIST || stage->passes[i] == NOC_PASS_FIND_LIGHTS)
+            i = schedule_bands(&s, i);
         else
             schedule_pass(&s, stage->passes[i++]);
     return !s.no_memory;
@@ -361,7 +413,9 @@ size_t noc_vk_scratch_bytes(const noc_plan *plan, const vk_facts *f) {
         if (noc_stage_has(&plan->stages[i], NOC_PASS_SHADE_ALL))
             return (size_t)band_rows(f, words) * f->blocks_x * BLOCK * words * 4;
         if (noc_stage_has(&plan->stages[i], NOC_PASS_BUILD_LIST))
-            return list_row_words(plan, f) * 4 * (list_band(plan, f) / 4);
+            return list_row_words(plan, f) * 4 * (band_of(plan, f) / 4);
+        if (noc_stage_has(&plan->stages[i], NOC_PASS_FIND_LIGHTS))
+            return 4 * (found_row_words(plan, f) * (band_of(plan, f) / 4) + FOUND_SPARE);
     }
     return 0;
 }

@@ -67,7 +67,7 @@ typedef struct vk_facts {
     bool views;   /* shaders gather for views */
     uint32_t lights, blocks_x, blocks_y;
     uint32_t tile_words; /* lists: of a tile in scratch */
-    size_t list_bytes;   /* that a band of tiles with lists may take */
+    size_t list_bytes;   /* that a band of tiles may take: lists, influence */
 } vk_facts;
 
 typedef NOC_ARRAY(vk_step) vk_steps;

@@ -13,6 +13,13 @@
     COMPUTE(presample_power)                                                                                           \
     COMPUTE(candidates_shared)                                                                                         \
     COMPUTE(candidates_tree)                                                                                           \
+    COMPUTE(influence_groups)                                                                                          \
+    COMPUTE(influence_near)                                                                                            \
+    COMPUTE(influence_look)                                                                                            \
+    COMPUTE(influence_rule)                                                                                            \
+    COMPUTE(influence_place)                                                                                           \
+    COMPUTE(influence_draw)                                                                                            \
+    COMPUTE(influence_candidates)                                                                                      \
     COMPUTE(resolve_ask)                                                                                               \
     COMPUTE(resolve_use)                                                                                               \
     COMPUTE(temporal_ask)                                                                                              \

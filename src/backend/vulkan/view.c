@@ -179,9 +179,10 @@ noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan) {
     return status;
 }
 
-noc_status noc_vk_view_fit_samples(vk_view *v, int draws) {
+noc_status noc_vk_view_fit_samples(vk_view *v, uint32_t rows) {
     enum { ROW_BYTES = 17 * 4 * BLOCK }; /* sample_row of the shaders */
-    v->subsets = presample_subsets((u1)draws, v->b.blocks_x * v->b.blocks_y);
+    v->subsets = presample_subsets(rows, v->b.blocks_x * v->b.blocks_y);
+    v->subset_rows = rows;
     if (v->samples.bytes)
         return NOC_OK;
     return noc_vk_make_buffer(v->device, PRESAMPLES / BLOCK * ROW_BYTES, 0, VK_PLACE_DEVICE, "candidates", &v->samples);
@@ -233,6 +234,7 @@ static void destroy(vk_view *v) {
     noc_vk_free_mean(v);
     noc_vk_forget_rays(v);
     noc_vk_free_buffer(d, &v->samples);
+    noc_vk_free_buffer(d, &v->found);
     noc_vk_free_buffer(d, &v->scratch);
     noc_vk_free_learning(v);
     noc_vk_free_buffer(d, &v->given);

@@ -93,6 +93,7 @@ typedef struct vk_device {
     double compile_seconds, compile_cpu_seconds; /* of all pipelines so far */
     vk_constants constants;
     size_t list_bytes;   /* vk_facts */
+    uint32_t pool_most;  /* influence: lights that the pool of a band has room for at most */
     double keep_seconds; /* between readings of a mean that nobody asks for */
     size_t bytes;        /* allocated */
     noc_device_params params;
@@ -163,7 +164,7 @@ typedef struct vk_array {
 
 /* What the tables of candidates on the device were made from. */
 typedef struct vk_sources_key {
-    uint64_t commits;
+    uint64_t commits, volumes;
     const void *alias, *tree, *map, *clusters[NOC_HALVES];
 } vk_sources_key;
 
@@ -176,7 +177,7 @@ typedef struct vk_world {
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
     vk_array instances, instance_lights, backs;
     vk_array backdrop, environment, environment_slots, environment_sines;
-    vk_array alias, tree, clusters;
+    vk_array alias, tree, clusters, volumes;
     vk_sources_key drawn_from;
     noc_scene_versions seen; /* that the arrays know */
     bool filled;
@@ -278,6 +279,7 @@ typedef struct vk_view {
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
     vk_buffer samples, scratch, counters, given;
+    vk_buffer found; /* influence: surfaces of the last frame by the number of lights that they found */
     vk_learning learning;
     vk_steps steps; /* of the stage at work */
     vk_views views;
@@ -285,9 +287,10 @@ typedef struct vk_view {
     noc_past past;
     noc_light_sources sources;
     const noc_map_light *map_light;
-    bool draws;           /* the last frame drew candidates */
-    noc_candidates drawn; /* from that */
-    uint32_t subsets;
+    bool draws;            /* the last frame drew candidates */
+    noc_light_stats drawn; /* from what: what is told of it, but for what the light set knows */
+    bool crowded;          /* told that lights had no room */
+    uint32_t subsets, subset_rows;
     uint64_t mean_frames, mean_version; /* of the mean on the device */
     vk_mean mean;
     noc_frame_stats stats; /* of the last finished frame; dropped: of all since it was last asked for */
@@ -399,8 +402,8 @@ noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch);
 noc_status noc_vk_fit_buffer(vk_view *v, size_t bytes, const char *what, vk_buffer *b);
 /* Room for the lights of the frame before, where the plan reuses what it made, and whether it can be. */
 noc_status noc_vk_view_begin_past(vk_view *v, const noc_plan *plan);
-/* Room for the candidates that blocks share, and how many subsets there are of `draws` a pixel. */
-noc_status noc_vk_view_fit_samples(vk_view *v, int draws);
+/* Room for candidates that are drawn before the frame, and how many subsets there are of `rows` a pixel. */
+noc_status noc_vk_view_fit_samples(vk_view *v, uint32_t rows);
 
 /* mean.c */
 /* The frame just submitted made the mean one of so many frames, 1: a new one. Reads it now and then. */
@@ -420,6 +423,16 @@ noc_status noc_vk_view_fit_learning(vk_view *v, const frame_constants *constants
 void noc_vk_begin_learning(vk_view *v, uint32_t epoch, VkCommandBuffer commands);
 void noc_vk_end_learning(vk_view *v);
 void noc_vk_free_learning(vk_view *v);
+
+/* influence.c */
+/* What the view draws from, and what is told of it; before the frame and when it is recorded: room for what is counted,
+ * and zeros. */
+noc_status noc_vk_get_influence(vk_view *v, const noc_frame *frame);
+void noc_vk_clear_found(vk_view *v, VkCommandBuffer commands);
+/* Waits for the last frame. */
+void noc_vk_note_found(vk_view *v, noc_light_stats *out);
+/* Returns the volumes as shaders read them, NULL where memory is refused. */
+void *noc_vk_pack_influence(const noc_influence *influence, size_t *bytes);
 
 /* frame.c */
 noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,

@@ -48,7 +48,7 @@ static noc_status fill(vk_world *w, vk_array *a, const void *data, size_t bytes,
 
 static const noc_range nothing = { 0, 0 };
 
-enum { VK_ARRAYS = 20 };
+enum { VK_ARRAYS = 21 };
 static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
     vk_array *const all[] = { &w->positions,
                               &w->indices,
@@ -69,7 +69,8 @@ static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
                               &w->environment_sines,
                               &w->alias,
                               &w->tree,
-                              &w->clusters };
+                              &w->clusters,
+                              &w->volumes };
     _Static_assert(NOC_COUNT(all) == VK_ARRAYS, "all arrays");
     memcpy(out, all, sizeof(all));
 }
@@ -303,10 +304,23 @@ static noc_status fill_clusters(vk_world *w, const noc_light_sources *sources) {
     return status;
 }
 
+static noc_status fill_influence(vk_world *w, const noc_influence *influence) {
+    size_t bytes;
+    void *words = noc_vk_pack_influence(influence, &bytes);
+    if (!words)
+        return noc_no_memory(w->log, "vulkan");
+    noc_status status = fill(w, &w->volumes, words, bytes, 0, bytes, 0, "influence volumes");
+    free(words);
+    return status;
+}
+
 noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sources, const noc_map_light *map) {
-    const vk_sources_key key = {
-        w->seen.commits, sources->alias, sources->tree, map, { sources->clusters[0], sources->clusters[1] }
-    };
+    const vk_sources_key key = { w->seen.commits,
+                                 sources->influence ? sources->influence->number : 0,
+                                 sources->alias,
+                                 sources->tree,
+                                 map,
+                                 { sources->clusters[0], sources->clusters[1] } };
     noc_status status = NOC_OK;
     if (!memcmp(&key, &w->drawn_from, sizeof(key)))
         return NOC_OK;
@@ -317,6 +331,8 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
         status = fill_tree(w, sources->tree);
     if (status == NOC_OK && (sources->clusters[0] || sources->clusters[1]))
         status = fill_clusters(w, sources);
+    if (status == NOC_OK && sources->influence)
+        status = fill_influence(w, sources->influence);
     if (status == NOC_OK && map)
         status = fill_alias(w, &w->environment_slots, map->texels);
     if (status == NOC_OK && map) {

@@ -13,7 +13,7 @@ void main() {
     place p = my_place();
     reservoir q = reservoir_empty();
     if (receives(receiver_at(HERE.surfaces, p.block, p.lane))) {
-        row_ = presample_subset(FRAME.seed, p.block, FRAME.index, HERE.subsets) * HERE.draws;
+        row_ = presample_subset(FRAME.seed, p.block, FRAME.index, HERE.subsets) * HERE.subset_rows;
         lane_ = p.lane;
         float xi = rng(key_at(p, FRAME.index), DIM_CANDIDATE);
         q = ris_presampled_twice(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));

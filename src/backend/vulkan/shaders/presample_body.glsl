@@ -6,7 +6,7 @@ shared uint plain_[MOST_WORDS];
 shared uint before_[MOST_WORDS + 1];
 
 void main() {
-    uint n = HERE.draws * BLOCK, subset = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
+    uint n = HERE.subset_rows * BLOCK, subset = gl_WorkGroupID.x, t = gl_LocalInvocationID.x;
     uint key = presample_key(FRAME.seed, subset, FRAME.index, 0u), words = (n + 31u) / 32u;
     for (uint w = t; w < words; w += 256u)
         plain_[w] = 0u;
@@ -27,7 +27,7 @@ void main() {
         uint word = plain_[i / 32u], bit = 1u << (i & 31u);
         uint before = before_[i / 32u] + bitCount(word & (bit - 1u));
         uint rank = presample_rank((word & bit) != 0u, i, before, before_[words]);
-        uint at = presample_turned(key, rank), row = subset * HERE.draws + at / BLOCK, l = at % BLOCK;
+        uint at = presample_turned(key, rank), row = subset * HERE.subset_rows + at / BLOCK, l = at % BLOCK;
         presample_put(row, l, presample_of(light_load(k.light), unit_low(k.place), unit_high(k.place)));
         HERE.samples.at[row].light[l] = k.light;
         HERE.samples.at[row].place[l] = k.place;
