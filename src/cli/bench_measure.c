@@ -164,7 +164,7 @@ static double seconds_of(const noc_frame_stats *frame, const noc_frame_stats *be
     return fmax(frame->wall_seconds - (frame->compile_seconds - before->compile_seconds), 0);
 }
 
-/* A case more, and the row that it fills; none where the backend refuses it. */
+/* A case more, and the row that it fills. */
 static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     bench *b = t->b;
     noc_progress progress = { show, t };
@@ -173,10 +173,6 @@ static noc_status add(turn *t, const noc_lab_case *of, const bench_row *row) {
     if (b->row_count == BENCH_ROWS)
         return NOC_OK;
     noc_status status = noc_lab_timer_add(t->timer, of, &progress);
-    if (status == NOC_ERR_UNSUPPORTED) { /* by the backend */
-        leave_out(b, t->section, row->name, noc_log_last_error(b->log));
-        return NOC_OK;
-    }
     status = status ? status : noc_lab_timer_get(t->timer, b->row_count - t->first, &times);
     if (status)
         return status;
