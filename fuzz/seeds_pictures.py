@@ -25,9 +25,11 @@ put("png", "interlaced-9x9.png", png(9, 9, 8, 2,
                                               for _ in range(y, 9, dy)), b"", 1))
 
 
-def exr(width, height, channels, compression, mask=False):
-    def attribute(name, kind, data):
-        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
+def attribute(name, kind, data):
+    return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
+
+
+def exr(width, height, channels, compression, more=b""):
 
     list_ = b"".join(c + b"\0" + struct.pack("<iB3xii", t, 0, 1, 1) for c, t in channels) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
@@ -38,7 +40,7 @@ def exr(width, height, channels, compression, mask=False):
             attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) +
             attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)) +
             attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + attribute(b"units", b"string", b"cd/m2") +
-            b"\0")
+            more + b"\0")
     rows = []
     for y in range(height):
         row = b"".join(struct.pack("<%d%s" % (width, "Ief"[t]),
@@ -87,6 +89,20 @@ put("exr", "half.exr", exr(5, 4, [(b"A", 1), (b"B", 1), (b"G", 1), (b"R", 1)], 0
 put("exr", "zip.exr", exr(20, 18, colours, 3))
 put("exr", "zips.exr", exr(20, 3, colours, 2))
 put("exr", "grey.exr", exr(5, 4, [(b"Y", 2)], 0))
+floats = lambda *v: struct.pack("<%df" % len(v), *v)
+told = attribute(b"adoptedNeutral", b"v2f", floats(.3, .3)) + attribute(b"whiteLuminance", b"float", floats(80))
+spaces = {
+    "aces": (.7347, .2653, 0, 1, .0001, -.077, .32168, .33767),
+    "xyz": (1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3),
+    "line": (.64, .33, .3, .6, .47, .465, .3127, .329)
+}
+for name, xy in spaces.items():
+    put("exr", name + ".exr",
+        exr(3, 2, colours, 0,
+            attribute(b"chromaticities", b"chromaticities", floats(*xy)) + told))
+put("exr", "chroma.exr", exr(3, 2, [(b"BY", 2), (b"RY", 2), (b"Y", 2)], 0))
+put("exr", "layer.exr", exr(3, 2, [(b"View.Combined." + c, t) for c, t in colours] + [(b"View.Depth.Z", 2)], 0))
+put("exr", "layers.exr", exr(3, 2, [(layer + c, t) for layer in (b".", b"a.") for c, t in colours], 0))
 
 
 def hdr(width, height, rows, more=""):

@@ -1,29 +1,10 @@
 /* OpenEXR, reading, by its C core: flat scanline and tiled parts, half, float and uint, R G B or Y, any compression it
  * knows. */
-#include "image/internal.h"
-
-#include <openexr.h>
+#include "image/exr.h"
 
 /* OpenEXR 3.1 compares each channel with all before it, and so each attribute. */
 #define MOST_CHANNELS 1024
 #define MOST_ATTRIBUTES 4096
-
-typedef struct exr_reader {
-    exr_context_t context;
-    int part;
-    const uint8_t *data;
-    size_t size;
-    const char *name;
-    noc_log *log;
-    noc_status status;
-    noc_image *image;
-    float *mask; /* emitter channel, as floats */
-    exr_attr_box2i_t window;
-    bool grey; /* Y alone */
-    bool has_mask;
-    bool tiled;
-    int x, y; /* of the chunk being unpacked, relative to the window */
-} exr_reader;
 
 static noc_status status_of(exr_result_t code) {
     switch (code) {
@@ -42,8 +23,7 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
         r->status = noc_error(r->log, status_of(code), "%s: EXR: %s", r->name, message);
 }
 
-/* Returns false when a step failed; the handler has reported it, or it is reported here. */
-static bool ok(exr_reader *r, exr_result_t result) {
+bool exr_ok(exr_reader *r, exr_result_t result) {
     if (result != EXR_ERR_SUCCESS && r->status == NOC_OK)
         r->status = noc_error(r->log, status_of(result), "%s: EXR: %s", r->name, exr_get_default_error_message(result));
     return r->status == NOC_OK;
@@ -110,51 +90,6 @@ static bool has_too_much(exr_reader *r) {
     return much != NULL;
 }
 
-static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list, const char *name) {
-    for (int i = 0; i < list->num_channels; i++)
-        if (strcmp(list->entries[i].name.str, name) == 0)
-            return &list->entries[i];
-    return NULL;
-}
-
-static bool has_picture(const exr_attr_chlist_t *list) {
-    return (find_channel(list, "R") && find_channel(list, "G") && find_channel(list, "B")) || find_channel(list, "Y");
-}
-
-/* The first flat part with a picture. */
-static bool choose_part(exr_reader *r) {
-    int count = 0;
-    if (!ok(r, exr_get_count(r->context, &count)))
-        return false;
-    bool flat = false;
-    for (r->part = 0; r->part < count; r->part++) {
-        exr_storage_t storage;
-        const exr_attr_chlist_t *list = NULL;
-        if (!ok(r, exr_get_storage(r->context, r->part, &storage)) ||
-            !ok(r, exr_get_channels(r->context, r->part, &list)))
-            return false;
-        r->tiled = storage == EXR_STORAGE_TILED;
-        if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
-            continue;
-        flat = true;
-        if (!has_picture(list))
-            continue;
-        r->grey = !(find_channel(list, "R") && find_channel(list, "G") && find_channel(list, "B"));
-        r->has_mask = find_channel(list, "emitter") != NULL;
-        for (int i = 0; i < list->num_channels; i++)
-            if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1) {
-                r->status =
-                    noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: channel '%s' is subsampled, which is not read",
-                              r->name, list->entries[i].name.str);
-                return false;
-            }
-        return true;
-    }
-    r->status = flat ? noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: has neither channels R, G, B nor Y", r->name)
-                     : noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: deep pixels are not read", r->name);
-    return false;
-}
-
 /* Largest ratio of unpacked to packed bytes, by compression; 0: no useful bound. */
 static double packing_bound(exr_compression_t compression) {
     switch (compression) {
@@ -173,10 +108,10 @@ static bool plausible(exr_reader *r, double width, double height) {
     const exr_attr_chlist_t *list = NULL;
     int32_t chunks = 0;
     uint64_t chunk_bytes = 0;
-    if (!ok(r, exr_get_compression(r->context, r->part, &compression)) ||
-        !ok(r, exr_get_channels(r->context, r->part, &list)) ||
-        !ok(r, exr_get_chunk_count(r->context, r->part, &chunks)) ||
-        !ok(r, exr_get_chunk_unpacked_size(r->context, r->part, &chunk_bytes)))
+    if (!exr_ok(r, exr_get_compression(r->context, r->part, &compression)) ||
+        !exr_ok(r, exr_get_channels(r->context, r->part, &list)) ||
+        !exr_ok(r, exr_get_chunk_count(r->context, r->part, &chunks)) ||
+        !exr_ok(r, exr_get_chunk_unpacked_size(r->context, r->part, &chunk_bytes)))
         return false;
     double bytes = 0, bound = packing_bound(compression);
     for (int i = 0; i < list->num_channels; i++)
@@ -191,7 +126,7 @@ static bool plausible(exr_reader *r, double width, double height) {
 }
 
 static bool make_image(exr_reader *r) {
-    if (!ok(r, exr_get_data_window(r->context, r->part, &r->window)))
+    if (!exr_ok(r, exr_get_data_window(r->context, r->part, &r->window)))
         return false;
     double width = (double)r->window.max.x - r->window.min.x + 1,
            height = (double)r->window.max.y - r->window.min.y + 1;
@@ -244,15 +179,33 @@ static void unpack_line(const uint8_t *from, int type, int width, float *to, int
     }
 }
 
+/* A channel's name within the layer; NULL: it is of another one. */
+static const char *within_layer(const exr_reader *r, const char *channel) {
+    size_t n = strlen(r->layer);
+    return strncmp(channel, r->layer, n) == 0 ? channel + n : NULL;
+}
+
+static int component(const exr_reader *r, const char *channel) {
+    static const char *const kept[][3] = {
+        [EXR_RGB] = { "R", "G", "B" }, [EXR_GREY] = { "Y", "", "" }, [EXR_CHROMA] = { "RY", "Y", "BY" }
+    };
+    const char *name = within_layer(r, channel);
+    for (int k = 0; k < 3 && name && *name; k++)
+        if (strcmp(name, kept[r->layout][k]) == 0)
+            return k;
+    return -1;
+}
+
 /* Where a channel's pixel (x, y) goes, NULL for channels that are not wanted. */
 static float *target(exr_reader *r, const char *channel, size_t x, size_t y, int *stride) {
     size_t pixel = y * (size_t)r->image->width + x;
+    const char *name = within_layer(r, channel);
     *stride = 1;
-    if (r->mask && strcmp(channel, "emitter") == 0)
+    if (r->mask && name && strcmp(name, "emitter") == 0)
         return r->mask + pixel;
-    const char *found = strlen(channel) == 1 ? strchr(r->grey ? "Y" : "RGB", channel[0]) : NULL;
+    int k = component(r, channel);
     *stride = 3;
-    return found ? r->image->rgb + 3 * pixel + (found - (r->grey ? "Y" : "RGB")) : NULL;
+    return k >= 0 ? r->image->rgb + 3 * pixel + k : NULL;
 }
 
 /* In the pipeline in place of the library's own routines: one of those, in 3.1.5, was seen to write outside the picture
@@ -286,7 +239,7 @@ static void *alloc_buffer(exr_transcoding_pipeline_buffer_id_t id, size_t size) 
 static void free_buffer(exr_transcoding_pipeline_buffer_id_t id, void *buffer) { free(buffer); }
 
 static bool run_pipeline(exr_reader *r, const exr_chunk_info_t *chunk, exr_decode_pipeline_t *decode) {
-    if (!ok(r, exr_decoding_initialize(r->context, r->part, chunk, decode)))
+    if (!exr_ok(r, exr_decoding_initialize(r->context, r->part, chunk, decode)))
         return false;
     decode->decoding_user_data = r;
     decode->alloc_fn = alloc_buffer;
@@ -299,10 +252,10 @@ static bool run_pipeline(exr_reader *r, const exr_chunk_info_t *chunk, exr_decod
         ch->user_line_stride = 12 * r->image->width;
         ch->decode_to_ptr = (uint8_t *)r->image->rgb;
     }
-    if (!ok(r, exr_decoding_choose_default_routines(r->context, r->part, decode)))
+    if (!exr_ok(r, exr_decoding_choose_default_routines(r->context, r->part, decode)))
         return false;
     decode->unpack_and_convert_fn = unpack_chunk;
-    return ok(r, exr_decoding_run(r->context, r->part, decode));
+    return exr_ok(r, exr_decoding_run(r->context, r->part, decode));
 }
 
 /* The chunk at (x, y), relative to the data window, which must be width x height. */
@@ -325,12 +278,12 @@ static bool read_chunk(exr_reader *r, const exr_chunk_info_t *chunk, int x, int 
 
 static bool read_scanlines(exr_reader *r) {
     int32_t lines = 0;
-    if (!ok(r, exr_get_scanlines_per_chunk(r->context, r->part, &lines)))
+    if (!exr_ok(r, exr_get_scanlines_per_chunk(r->context, r->part, &lines)))
         return false;
     lines = NOC_MAX(lines, 1);
     for (int y = 0; y < r->image->height; y += lines) {
         exr_chunk_info_t chunk;
-        if (!ok(r, exr_read_scanline_chunk_info(r->context, r->part, r->window.min.y + y, &chunk)) ||
+        if (!exr_ok(r, exr_read_scanline_chunk_info(r->context, r->part, r->window.min.y + y, &chunk)) ||
             !read_chunk(r, &chunk, 0, y, r->image->width, NOC_MIN(lines, r->image->height - y)))
             return false;
     }
@@ -340,7 +293,7 @@ static bool read_scanlines(exr_reader *r) {
 /* The full-size level of a tiled part. */
 static bool read_tiles(exr_reader *r) {
     int32_t tw = 0, th = 0;
-    if (!ok(r, exr_get_tile_sizes(r->context, r->part, 0, 0, &tw, &th)))
+    if (!exr_ok(r, exr_get_tile_sizes(r->context, r->part, 0, 0, &tw, &th)))
         return false;
     if (tw < 1 || th < 1) {
         r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: tiles of %d x %d pixels", r->name, tw, th);
@@ -349,7 +302,7 @@ static bool read_tiles(exr_reader *r) {
     for (int ty = 0; ty <= (r->image->height - 1) / th; ty++)
         for (int tx = 0; tx <= (r->image->width - 1) / tw; tx++) {
             exr_chunk_info_t chunk;
-            if (!ok(r, exr_read_tile_chunk_info(r->context, r->part, tx, ty, 0, 0, &chunk)) ||
+            if (!exr_ok(r, exr_read_tile_chunk_info(r->context, r->part, tx, ty, 0, 0, &chunk)) ||
                 !read_chunk(r, &chunk, tx * tw, ty * th, NOC_MIN(tw, r->image->width - tx * tw),
                             NOC_MIN(th, r->image->height - ty * th)))
                 return false;
@@ -370,8 +323,7 @@ static void finish_image(exr_reader *r) {
     size_t n = image_pixels(r->image);
     read_channel_name(r);
     r->image->smoothed = exr_get_attribute_by_name(r->context, r->part, "smoothed", &smoothed) == EXR_ERR_SUCCESS;
-    for (size_t i = 0; r->grey && i < n; i++)
-        r->image->rgb[3 * i + 1] = r->image->rgb[3 * i + 2] = r->image->rgb[3 * i];
+    exr_apply_colours(r);
     for (size_t i = 0; r->mask && i < n; i++)
         r->image->emitter[i] = r->mask[i] != 0; /* not-a-number counts as an emitter: then it is left out */
 }
@@ -389,8 +341,8 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     init.max_image_width = init.max_image_height = NOC_IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = NOC_IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    if (!has_too_much(&r) && ok(&r, exr_start_read(&r.context, name, &init)) && choose_part(&r) && make_image(&r) &&
-        (r.tiled ? read_tiles(&r) : read_scanlines(&r)))
+    if (!has_too_much(&r) && exr_ok(&r, exr_start_read(&r.context, name, &init)) && exr_choose(&r) &&
+        exr_read_colours(&r) && make_image(&r) && (r.tiled ? read_tiles(&r) : read_scanlines(&r)))
         finish_image(&r);
     if (r.context)
         exr_finish(&r.context);

@@ -66,6 +66,7 @@ static bool is_reserved(const char *key) {
 
 static bool write_header(exr_writer *w, const meta_list *meta) {
     static const exr_attr_chromaticities_t rec709 = { 0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f };
+    static const exr_attr_v2f_t d65 = { { .x = 0.3127f, .y = 0.3290f } };
     exr_context_t c = w->context;
     bool good = ok(w, exr_add_part(c, NULL, EXR_STORAGE_SCANLINE, &w->part)) &&
                 ok(w, exr_initialize_required_attr_simple(c, w->part, w->width, w->height, EXR_COMPRESSION_ZIP));
@@ -83,6 +84,7 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
         good = ok(w, exr_add_channel(c, w->part, "emitter", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1));
     if (w->image && good)
         good = ok(w, exr_attr_set_chromaticities(c, w->part, "chromaticities", &rec709)) &&
+               ok(w, exr_attr_set_v2f(c, w->part, "adoptedNeutral", &d65)) &&
                ok(w, exr_attr_set_float(c, w->part, "whiteLuminance", 1));
     good = good && ok(w, exr_set_longname_support(c, 1));
     for (size_t i = 0; good && i < meta->entries.len; i++) {

@@ -38,6 +38,20 @@ typedef struct srgb8_table {
 void srgb8_table_init(srgb8_table *table);
 uint8_t srgb8_encode(const srgb8_table *table, float linear); /* the nearest code; clamps; NaN gives 0 */
 
+/* primaries.c: CIE 1931 x, y of red, green, blue and white */
+typedef struct colour_space {
+    double xy[4][2];
+} colour_space;
+extern const colour_space colour_rec709;                        /* with D65: the working space */
+bool colour_near(const colour_space *a, const colour_space *b); /* to 1e-6, as far as floats go */
+/* Linear colours of a file to the working space: RGB of a space whose white becomes D65, and CIE XYZ in which the x, y
+ * of neutral (NULL: D65) do; by Bradford's transform, as OpenEXR's AcesInputFile has it. They, and what RGB add to
+ * luminance, return what is wrong with "them", the chromaticities, that have no such matrix, and NULL otherwise. */
+const char *colour_from_rgb(const colour_space *space, double to[3][3]);
+const char *colour_from_xyz(const double *neutral, double to[3][3]);
+const char *colour_luminance(const colour_space *space, double y[3]);
+void colour_apply(const double m[3][3], const double from[3], double to[3]);
+
 #define DISPLAY_WHITE 6500.0                            /* K, where colours are shown as they are */
 double display_white(const noc_display_params *params); /* K that is shown as white; NULL: default */
 

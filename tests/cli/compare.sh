@@ -37,6 +37,27 @@ pixels, share = re.search(r"^  ([\d,]+) pixels lit in the picture and 0 in the r
 assert int(pixels.replace(",",
                           "")) == all["unlit"] > 9 and share == "%.3g" % (100 * all["relmse_unlit"] / all["relmse"])'
 result $? "pixels that the reference leaves black are told" "$(cat table)"
+# one_picture NAME FILE REFERENCE: of one luminance to a thousandth, and of the same colours as far as halves hold them
+one_picture() {
+    run compare --json "$2" "$3"
+    python3 -c '
+import json
+all = json.load(open("out"))["all"]
+assert abs(all["bias"] - 1) < 5e-4 and all["relmse"] < 1e-6 and all["rmse8"] < .5'
+    result $? "$1" "$(cat err)"
+}
+if command -v exr2aces >/dev/null && command -v exrstdattr >/dev/null; then
+    exr2aces reference.exr aces.exr && one_picture "a picture that OpenEXR turned to ACES" aces.exr reference.exr
+    # ACEScg whose neutral is another than its white: what its pixels are then is OpenEXR's to say
+    exrstdattr -chromaticities .713 .293 .165 .83 .128 .044 .32168 .33767 -adoptedNeutral .3457 .3585 \
+        reference.exr cg.exr &&
+        exr2aces cg.exr aces.exr && one_picture "and one of another space and neutral" aces.exr cg.exr
+    run compare --json cg.exr reference.exr
+    python3 -c 'import json; assert json.load(open("out"))["all"]["bias"] > 1.02'
+    result $? "the same numbers in another space are another picture"
+else
+    skip "a picture that OpenEXR turned to ACES" "no exr2aces"
+fi
 run compare is.png is.png
 test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err
 result $? "PNG against PNG speaks of white, not cd/m2"

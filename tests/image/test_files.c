@@ -187,6 +187,9 @@ static void exr_holds_units_and_metadata(void **state) {
     assert_true(white == 1);
     assert_int_equal(exr_attr_get_chromaticities(c, 0, "chromaticities", &primaries), EXR_ERR_SUCCESS);
     assert_true(primaries.red_x == 0.64f && primaries.white_y == 0.329f);
+    exr_attr_v2f_t neutral;
+    assert_int_equal(exr_attr_get_v2f(c, 0, "adoptedNeutral", &neutral), EXR_ERR_SUCCESS);
+    assert_true(neutral.x == 0.3127f && neutral.y == 0.329f);
     const exr_attr_chlist_t *list;
     exr_compression_t compression;
     assert_int_equal(exr_get_channels(c, 0, &list), EXR_ERR_SUCCESS);
