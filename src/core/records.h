@@ -25,6 +25,12 @@
 /* Bits of a light's flags: the number of its profile, 0 for none. */
 #define LIGHT_PROFILE 6
 #define LIGHT_PROFILE_BITS 0xffc0u
+/* The steps of a profile's table: rows from bit 16 on, and from bit PROFILE_POLE on the pole that rows are angles from:
+ * the axis (photometric type C), down (A) or left (B). */
+#define PROFILE_ROWS 0x3fffu
+#define PROFILE_POLE 30
+#define PROFILE_DOWN 1u
+#define PROFILE_LEFT 2u
 #define NO_LIGHT 0xffffffffu
 #define NO_INSTANCE 0xffffffffu /* in place of one: the world */
 /* Textures: core/texture.h. */

@@ -8,14 +8,6 @@
 
 enum { PHOTOMETRY_MOST_ANGLES = 4096, PHOTOMETRY_MOST_VALUES = 1 << 22 };
 
-struct noc_profile {
-    NOC_ARRAY(double) c;     /* ascending, in [0, 360): all around */
-    NOC_ARRAY(double) gamma; /* ascending, in [0, 180] */
-    NOC_ARRAY(double) cd;    /* plane after plane */
-    noc_profile_info info;   /* without zones and pointers, which noc_profile_get_info makes */
-    noc_arena texts;
-};
-
 /* What a file holds before it is made whole. type: 'C', 'A' or 'B'; of A and B, c is horizontal and gamma vertical. */
 typedef struct photometry_grid {
     NOC_ARRAY(double) c;
@@ -25,10 +17,19 @@ typedef struct photometry_grid {
 } photometry_grid;
 void photometry_grid_free(photometry_grid *g);
 
+struct noc_profile {
+    NOC_ARRAY(double) c;     /* ascending, in [0, 360): all around */
+    NOC_ARRAY(double) gamma; /* ascending, in [0, 180] */
+    NOC_ARRAY(double) cd;    /* plane after plane; of types A and B resampled from `own` */
+    photometry_grid own;     /* of types A and B, as measured: intensities are read from it; of type C empty */
+    noc_profile_info info;   /* without zones and pointers, which noc_profile_get_info makes */
+    noc_arena texts;
+};
+
 /* profile.c. Both report. */
 noc_profile *photometry_new(noc_log *log, const char *name, const char *format);
 /* Takes the grid into the profile: its symmetry by its angles (noc_profile_create), its flux, peak and the rest of
- * info. line: of the file where the angles stand, 0: none. */
+ * info. A grid of type A or B is moved there: `g` is then empty. line: of the file where the angles stand, 0: none. */
 noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, const char *name, int line);
 /* Sets info's street: C angle c, or the one across from it where more light goes there below the horizon. Files of
  * luminaires that are symmetric across the street differ in which end of it they begin at. */
@@ -71,14 +72,23 @@ typedef struct photometry_format {
 } photometry_format;
 extern const photometry_format photometry_ies, photometry_eulumdat;
 
-/* table.c: what core/profile.h looks up. rows of gamma from 0 to `gamma_max`, columns of C all around, both at even
- * steps, candela a lumen: bilinear between them, and nothing beyond gamma_max. */
+/* profile.c, of types A and B: the angles that an axis of the grid spans, mirrored where they begin at 0; and the
+ * intensity at horizontal angle h and vertical angle v, 0 beyond these. Degrees, cd. */
+void photometry_span(const double *angle, size_t n, double *from, double *to);
+double photometry_grid_at(const photometry_grid *g, double h, double v);
+
+/* table.c: what core/profile.h looks up: candela a lumen at even steps of two angles, bilinear between them. Rows are
+ * angles from a pole, columns are angles around it. Of type C the pole is the axis: rows are gamma, from 0 on, columns
+ * are C, all around. Of type A the pole points down and of B to the left, as seen along the axis, so that rows are 90
+ * degrees more than the vertical (A) or horizontal (B) angle, and columns the other angle: nothing is resampled. */
 typedef struct photometry_table {
-    NOC_ARRAY(float) value; /* row after row */
-    int rows, columns;
-    double gamma_max;
-    float peak;  /* greatest value */
-    bool upward; /* sends something beyond 90 degrees */
+    NOC_ARRAY(float) cells; /* row after row, the corners of a step: near, next, far, last of core/profile.h */
+    int rows, columns;      /* steps */
+    char type;              /* 'A', 'B' or 'C' */
+    double row_from, row_to, column_from, column_to; /* degrees; nothing is sent beyond */
+    double gamma_max;                                /* degrees from the axis, beyond which nothing is sent */
+    float peak;                                      /* greatest value */
+    bool upward;                                     /* sends something beyond 90 degrees */
 } photometry_table;
 noc_status photometry_table_make(photometry_table *t, const noc_profile *p, noc_log *log);
 void photometry_table_free(photometry_table *t);

@@ -32,6 +32,7 @@ void noc_profile_destroy(noc_profile *p) {
     array_free(&p->c);
     array_free(&p->gamma);
     array_free(&p->cd);
+    photometry_grid_free(&p->own);
     arena_free(&p->texts);
     free(p);
 }
@@ -55,9 +56,55 @@ static bool locate(const double *angle, size_t n, double x, size_t *i, double *s
     return true;
 }
 
+/* ---- types A and B ---- */
+
+void photometry_span(const double *angle, size_t n, double *from, double *to) {
+    *to = angle[n - 1];
+    *from = angle[0] == 0 ? -*to : angle[0];
+}
+
+/* Angles that are beyond the first or last by their rounding alone are these. */
+static double to_span(const double *angle, size_t n, double x) {
+    double in = NOC_CLAMP(x, angle[0], angle[n - 1]);
+    return fabs(in - x) < 1e-9 ? in : x;
+}
+
+double photometry_grid_at(const photometry_grid *g, double h, double v) {
+    size_t i, k;
+    double s, t;
+    if (g->c.data[0] == 0)
+        h = fabs(h);
+    if (g->gamma.data[0] == 0)
+        v = fabs(v);
+    h = to_span(g->c.data, g->c.len, h);
+    v = to_span(g->gamma.data, g->gamma.len, v);
+    if (!locate(g->c.data, g->c.len, h, &i, &s) || !locate(g->gamma.data, g->gamma.len, v, &k, &t))
+        return 0;
+    size_t n = g->gamma.len;
+    const double *a = g->cd.data + i * n + k, *b = g->cd.data + NOC_MIN(i + 1, g->c.len - 1) * n + k;
+    return (1 - s) * ((1 - t) * a[0] + t * a[1]) + s * ((1 - t) * b[0] + t * b[1]);
+}
+
+/* Looks along the axis: right is C 0, up is C 90. In type A the horizontal angle turns around the upright pole, in B
+ * the vertical angle turns around the pole that lies to the right. */
+static double own_intensity(const photometry_grid *g, double c_deg, double gamma_deg) {
+    double c = c_deg * M_PI / 180, t = gamma_deg * M_PI / 180;
+    double right = sin(t) * cos(c), up = sin(t) * sin(c), ahead = cos(t), h, v;
+    if (g->type == 'A') {
+        h = atan2(right, ahead);
+        v = asin(NOC_CLAMP(up, -1, 1));
+    } else {
+        h = asin(NOC_CLAMP(right, -1, 1));
+        v = atan2(up, ahead);
+    }
+    return photometry_grid_at(g, h * 180 / M_PI, v * 180 / M_PI);
+}
+
 double noc_profile_intensity(const noc_profile *p, double c, double gamma) {
     size_t k, n;
     double t;
+    if (p && p->own.cd.len)
+        return own_intensity(&p->own, c, gamma);
     if (!p || !locate(p->gamma.data, p->gamma.len, gamma, &k, &t))
         return 0;
     n = p->c.len;
@@ -75,22 +122,6 @@ double noc_profile_intensity(const noc_profile *p, double c, double gamma) {
     return (1 - share) * ((1 - t) * a[0] + t * a[1]) + share * ((1 - t) * b[0] + t * b[1]);
 }
 
-/* ---- types A and B ---- */
-
-static double grid_at(const photometry_grid *g, double h, double v) {
-    size_t i, k;
-    double s, t;
-    if (g->c.data[0] == 0)
-        h = fabs(h);
-    if (g->gamma.data[0] == 0)
-        v = fabs(v);
-    if (!locate(g->c.data, g->c.len, h, &i, &s) || !locate(g->gamma.data, g->gamma.len, v, &k, &t))
-        return 0;
-    size_t n = g->gamma.len;
-    const double *a = g->cd.data + i * n + k, *b = g->cd.data + NOC_MIN(i + 1, g->c.len - 1) * n + k;
-    return (1 - s) * ((1 - t) * a[0] + t * a[1]) + s * ((1 - t) * b[0] + t * b[1]);
-}
-
 static double least_step(const double *angle, size_t n) {
     double least = 5;
     for (size_t i = 0; i + 1 < n; i++)
@@ -98,8 +129,7 @@ static double least_step(const double *angle, size_t n) {
     return least;
 }
 
-/* Looks along the axis: right is C 0, up is C 90. In type A the horizontal angle turns around the upright pole, in B
- * the vertical angle turns around the pole that lies to the right. */
+/* The same, nearly, in planes of C: what is told of the profile. */
 static bool turn_grid(noc_profile *p, const photometry_grid *g) {
     double step = fmin(least_step(g->c.data, g->c.len), least_step(g->gamma.data, g->gamma.len));
     size_t rows = (size_t)ceil(180 / NOC_CLAMP(step, .25, 5)) + 1, planes = rows > 200 ? 144 : 72;
@@ -110,18 +140,8 @@ static bool turn_grid(noc_profile *p, const photometry_grid *g) {
     for (size_t k = 0; k < rows; k++)
         p->gamma.data[k] = 180.0 * (double)k / (double)(rows - 1);
     for (size_t i = 0; i < planes; i++)
-        for (size_t k = 0; k < rows; k++) {
-            double c = p->c.data[i] * M_PI / 180, t = p->gamma.data[k] * M_PI / 180;
-            double right = sin(t) * cos(c), up = sin(t) * sin(c), ahead = cos(t), h, v;
-            if (g->type == 'A') {
-                h = atan2(right, ahead);
-                v = asin(NOC_CLAMP(up, -1, 1));
-            } else {
-                h = asin(NOC_CLAMP(right, -1, 1));
-                v = atan2(up, ahead);
-            }
-            p->cd.data[i * rows + k] = grid_at(g, h * 180 / M_PI, v * 180 / M_PI);
-        }
+        for (size_t k = 0; k < rows; k++)
+            p->cd.data[i * rows + k] = own_intensity(g, p->c.data[i], p->gamma.data[k]);
     p->c.len = planes;
     p->gamma.len = rows;
     p->cd.len = planes * rows;
@@ -222,8 +242,25 @@ void photometry_face_street(noc_profile *p, double c) {
     p->info.street = back > 1.02 * front ? fmod(c + 180, 360) : c;
 }
 
+/* Of the file's own angles. */
+static void find_own_peak(noc_profile_info *info, const photometry_grid *g) {
+    size_t n = g->gamma.len, most = 0;
+    for (size_t i = 0; i < g->cd.len; i++)
+        most = g->cd.data[i] > g->cd.data[most] ? i : most;
+    double h = g->c.data[most / n] * M_PI / 180, v = g->gamma.data[most % n] * M_PI / 180;
+    double right = g->type == 'A' ? cos(v) * sin(h) : sin(h), up = g->type == 'A' ? sin(v) : cos(h) * sin(v);
+    double c = atan2(up, right) * 180 / M_PI;
+    info->peak = g->cd.data[most];
+    info->peak_c = c < 0 ? c + 360 : c;
+    info->peak_gamma = atan2(hypot(right, up), cos(h) * cos(v)) * 180 / M_PI;
+}
+
 static void find_peak(noc_profile *p) {
     size_t n = p->gamma.len;
+    if (p->own.cd.len) {
+        find_own_peak(&p->info, &p->own);
+        return;
+    }
     for (size_t i = 0; i < p->cd.len; i++)
         if (p->cd.data[i] > p->info.peak) {
             p->info.peak = p->cd.data[i];
@@ -253,8 +290,12 @@ noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, con
     info->gamma_min = g->gamma.data[0];
     info->gamma_max = g->gamma.data[g->gamma.len - 1];
     photometry_face_street(p, g->type != 'C' || s == HALF_ACROSS ? 90 : 0);
+    if (g->type != 'C') {
+        p->own = *g;
+        *g = (photometry_grid){ .type = g->type };
+    }
     find_peak(p);
-    info->lumens = g->type == 'C' ? noc_profile_flux(p, 0, 180, NAN) : photometry_grid_flux(g);
+    info->lumens = p->own.cd.len ? photometry_grid_flux(&p->own) : noc_profile_flux(p, 0, 180, NAN);
     if (!(info->peak > 0) || !(info->lumens > 0))
         return noc_error(log, NOC_ERR_FORMAT, "%s%s: sends no light", name, place);
     return NOC_OK;

@@ -132,9 +132,10 @@ static bool fits(const noc_scene *s, size_t number, size_t heads) {
     uint32_t place, steps;
     memcpy(&place, head, sizeof(place));
     memcpy(&steps, head + 1, sizeof(steps));
-    uint64_t cells = (uint64_t)(steps >> 16) * (steps & 0xffff);
-    return cells && place >= heads && place + cells <= s->profile_cells.len / 4 && head[2] > 0 && head[2] < 1e9f &&
-           head[3] > 0 && head[3] <= 1;
+    uint64_t cells = (uint64_t)(steps >> 16 & PROFILE_ROWS) * (steps & 0xffff);
+    uint32_t pole = steps >> PROFILE_POLE; /* not the axis: a window lies before the table */
+    return cells && pole <= PROFILE_LEFT && place >= heads + (pole > 0) && place + cells <= s->profile_cells.len / 4 &&
+           head[2] > 0 && head[2] < 1e9f && head[3] > 0 && head[3] <= 1;
 }
 
 static bool check_cells(const void *ctx, size_t first, size_t end) {

@@ -7,37 +7,51 @@
 
 enum { MOST_PROFILES = LIGHT_PROFILE_BITS >> LIGHT_PROFILE, CELL = 4 };
 
+static size_t first_cell(const noc_scene *scene) {
+    return NOC_MAX(scene->profile_cells.len / CELL, (size_t)MOST_PROFILES);
+}
+
+/* Of a table, with its window. */
+static size_t cells_of(const photometry_table *t) {
+    return (size_t)t->rows * (size_t)t->columns + (t->type != 'C' ? 1 : 0);
+}
+
 /* Heads first, as many as there may be, so that tables stay where they are. */
 static void put_table(noc_scene *scene, const photometry_table *t) {
-    size_t first = NOC_MAX(scene->profile_cells.len, (size_t)MOST_PROFILES * CELL);
+    float *cells = scene->profile_cells.data;
+    size_t first = first_cell(scene), end = first + cells_of(t);
+    double rows_a_turn = t->rows * 360 / (t->row_to - t->row_from);
+    uint32_t pole = t->type == 'A' ? PROFILE_DOWN : t->type == 'B' ? PROFILE_LEFT : 0;
     if (!scene->profile_cells.len)
-        memset(scene->profile_cells.data, 0, first * sizeof(float));
-    uint32_t steps = (uint32_t)(t->rows - 1) << 16 | (uint32_t)t->columns, place = (uint32_t)(first / CELL);
-    float *head = scene->profile_cells.data + scene->profiles.len * CELL, *cell = scene->profile_cells.data + first;
+        memset(cells, 0, first * CELL * sizeof(float));
+    if (pole) {
+        double from = t->column_from < 0 ? t->column_from + 360 : t->column_from;
+        const float window[CELL] = { (float)((90 + t->row_from) / 360), (float)(from / 360),
+                                     (float)(t->columns * 360 / (t->column_to - t->column_from)) };
+        memcpy(cells + CELL * first++, window, sizeof(window));
+    }
+    uint32_t steps = pole << PROFILE_POLE | (uint32_t)t->rows << 16 | (uint32_t)t->columns, place = (uint32_t)first;
+    float *head = cells + scene->profiles.len * CELL;
     memcpy(head, &place, sizeof(place));
     memcpy(head + 1, &steps, sizeof(steps));
-    head[2] = (float)((t->rows - 1) * 360 / t->gamma_max);
+    head[2] = (float)rows_a_turn;
     head[3] = (float)(t->gamma_max / 360);
-    for (int r = 0; r + 1 < t->rows; r++)
-        for (int c = 0; c < t->columns; c++, cell += CELL) {
-            const float *low = t->value.data + r * t->columns, *high = low + t->columns;
-            int next = (c + 1) % t->columns;
-            memcpy(cell, (float[CELL]){ low[c], low[next], high[c], high[next] }, CELL * sizeof(float));
-        }
-    scene->profile_cells.len = first + (size_t)(t->rows - 1) * (size_t)t->columns * CELL;
+    memcpy(cells + CELL * first, t->cells.data, t->cells.len * sizeof(float));
+    scene->profile_cells.len = end * CELL;
 }
 
 /* Of noc_scene_profile, by Simpson's rule between the rows, so that light which is all at the axis counts, too. The
  * squared cosine is 2 pi / 3 over a hemisphere. */
 static float strength_of(const photometry_table *t) {
-    double squares = 0, step = t->gamma_max / (t->rows - 1) * M_PI / 180;
-    for (int r = 0; r + 1 < t->rows; r++)
-        for (int c = 0; c < t->columns; c++) {
-            const float *low = t->value.data + r * t->columns + c;
-            double a = (double)low[0], b = (double)low[t->columns], middle = (a + b) / 2;
-            squares += a * a * sin(r * step) + 4 * middle * middle * sin((r + .5) * step) + b * b * sin((r + 1) * step);
+    double squares = 0, step = (t->row_to - t->row_from) / t->rows * M_PI / 180;
+    double start = (t->type == 'C' ? t->row_from : t->row_from + 90) * M_PI / 180;
+    for (int r = 0; r < t->rows; r++)
+        for (int c = 0; c < 2 * t->columns; c++) { /* both sides of each cell */
+            const float *corner = t->cells.data + CELL * (r * t->columns + c / 2) + c % 2;
+            double a = (double)corner[0], b = (double)corner[2], middle = (a + b) / 2, low = start + r * step;
+            squares += a * a * sin(low) + 4 * middle * middle * sin(low + .5 * step) + b * b * sin(low + step);
         }
-    squares *= step / 6 * 2 * M_PI / t->columns;
+    squares *= step / 6 * (t->column_to - t->column_from) * M_PI / 180 / (2 * t->columns);
     return fminf((float)sqrt(squares / (t->upward ? 4 * M_PI : 2 * M_PI / 3)), t->peak);
 }
 
@@ -67,11 +81,9 @@ int noc_scene_add_profile(noc_scene *scene, const noc_profile *profile) {
     made.peak = t.peak;
     made.strength = strength_of(&t);
     made.upward = t.upward;
-    size_t cells = (size_t)(t.rows - 1) * (size_t)t.columns;
     noc_scene_lock_commit(scene); /* frames read the array */
     bool room = array_reserve(&scene->profiles, scene->profiles.len + 1) &&
-                array_reserve(&scene->profile_cells,
-                              NOC_MAX(scene->profile_cells.len, (size_t)MOST_PROFILES * CELL) + cells * CELL);
+                array_reserve(&scene->profile_cells, (first_cell(scene) + cells_of(&t)) * CELL);
     if (room) {
         put_table(scene, &t);
         scene->profiles.data[scene->profiles.len++] = made;

@@ -105,20 +105,27 @@ static double beam(double right, double up, double ahead) {
     return ahead <= 0 ? 0 : 500 * ahead * ahead * (1 + .4 * right + .3 * up * up);
 }
 
+/* A beam between -to and to degrees of both angles, every `step`; half: the angles from 0 on. */
+static void put_beam(made *m, int type, double step, double to, bool half) {
+    double from = half ? 0 : -to;
+    int n = count_steps(from, to, step);
+    put(m, "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 %d %d %d 2 0 0 0 1 1 10\n", n, n, type);
+    put_steps(m, from, to, step);
+    put_steps(m, from, to, step);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++) {
+            double a = (from + i * step) * M_PI / 180, b = (from + k * step) * M_PI / 180;
+            double cd = type == 3 ? beam(cos(b) * sin(a), sin(b), cos(b) * cos(a))
+                                  : beam(sin(a), cos(a) * sin(b), cos(a) * cos(b));
+            put(m, "%.9g ", fmax(cd, 0));
+        }
+}
+
 static void test_types(void **state) {
     static made m;
     for (int type = 2; type <= 3; type++) {
         m.len = 0;
-        put(&m, "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 73 73 %d 2 0 0 0 1 1 10\n", type);
-        put_steps(&m, -90, 90, 2.5);
-        put_steps(&m, -90, 90, 2.5);
-        for (double h = -90; h <= 90; h += 2.5)
-            for (double v = -90; v <= 90; v += 2.5) {
-                double a = h * M_PI / 180, b = v * M_PI / 180;
-                double cd = type == 3 ? beam(cos(b) * sin(a), sin(b), cos(b) * cos(a))
-                                      : beam(sin(a), cos(a) * sin(b), cos(a) * cos(b));
-                put(&m, "%.6g ", fmax(cd, 0));
-            }
+        put_beam(&m, type, 2.5, 90, false);
         noc_profile *p = read_made(&m);
         noc_profile_info info;
         noc_profile_get_info(p, &info);
@@ -129,8 +136,63 @@ static void test_types(void **state) {
             for (double g = 0; g < 90; g += 7) {
                 double x = sin(g * M_PI / 180), want;
                 want = beam(x * cos(c * M_PI / 180), x * sin(c * M_PI / 180), cos(g * M_PI / 180));
-                assert_true(fabs(noc_profile_intensity(p, c, g) - want) < 4);
+                assert_true(fabs(noc_profile_intensity(p, c, g) - want) < 1); /* linear over 2.5 degrees */
             }
+        noc_profile_destroy(p);
+    }
+}
+
+/* In the file's own angles: its intensities, and the means of them halfway. The direction is worked out here. */
+static double own_direction(const noc_profile *p, int type, double h, double v) {
+    double a = h * M_PI / 180, b = v * M_PI / 180;
+    double right = type == 3 ? cos(b) * sin(a) : sin(a), up = type == 3 ? sin(b) : cos(a) * sin(b);
+    double ahead = cos(a) * cos(b);
+    return noc_profile_intensity(p, atan2(up, right) * 180 / M_PI, atan2(hypot(right, up), ahead) * 180 / M_PI);
+}
+
+static void test_own_angles(void **state) {
+    static made m;
+    for (int type = 2; type <= 3; type++) {
+        m.len = 0; /* a spike of one angle on a plateau: 1000 cd at (10, 10), 50 elsewhere within 20 degrees */
+        put(&m, "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 5 5 %d 2 0 0 0 1 1 10\n-20 -10 0 10 20\n-20 -10 0 10 20\n", type);
+        for (int i = 0; i < 25; i++)
+            put(&m, "%d ", i == 18 ? 1000 : 50);
+        noc_profile *p = read_made(&m);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        assert_true(info.peak == 1000 && fabs(own_direction(p, type, 10, 10) - 1000) < 1e-6);
+        assert_true(fabs(noc_profile_intensity(p, info.peak_c, info.peak_gamma) - 1000) < 1e-6);
+        assert_true(fabs(own_direction(p, type, 5, 10) - 525) < 1e-6);
+        assert_true(fabs(own_direction(p, type, 15, 5) - (1000 + 3 * 50) / 4.) < 1e-6);
+        assert_true(fabs(own_direction(p, type, -20, 20) - 50) < 1e-6 && own_direction(p, type, -20.1, 20) == 0);
+        noc_profile_destroy(p);
+    }
+}
+
+/* The table of types A and B: the file's own angles, no more than it measured, and a lumen in all. */
+static void test_own_table(void **state) {
+    static made m;
+    photometry_table t;
+    for (int i = 0; i < 4; i++) {
+        int type = 2 + i % 2;
+        bool half = i >= 2;
+        m.len = 0;
+        put_beam(&m, type, 2.5, 40, half);
+        noc_profile *p = read_made(&m);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
+        assert_true(t.type == (type == 2 ? 'B' : 'A') && t.rows == 32 && t.columns == 32 && !t.upward);
+        assert_true(t.row_from == -40 && t.row_to == 40 && t.column_from == -40 && t.column_to == 40);
+        double corner = acos(pow(cos(40 * M_PI / 180), 2)) * 180 / M_PI;
+        assert_true(t.gamma_max >= corner && t.gamma_max < corner + .01);
+        for (int r = 0; r < 32; r++)
+            for (int c = 0; c < 32; c++) {
+                double row = 2.5 * r - 40, column = 2.5 * c - 40;
+                double want = type == 3 ? own_direction(p, type, column, row) : own_direction(p, type, row, column);
+                assert_true(fabs(t.cells.data[4 * (32 * r + c)] * info.lumens / want - 1) < 1e-5);
+            }
+        photometry_table_free(&t);
         noc_profile_destroy(p);
     }
 }
@@ -289,20 +351,55 @@ static void test_table(void **state) {
         noc_profile_info info;
         noc_profile_get_info(p, &info);
         assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
-        assert_true(t.rows == 37 && t.columns == (s == ABOUT_AXIS ? 1 : 24) && t.gamma_max == 180 && t.upward);
+        assert_true(t.rows == 36 && t.columns == (s == ABOUT_AXIS ? 1 : 24) && t.gamma_max == 180 && t.upward);
         for (int r = 0; r < t.rows; r++)
             for (int i = 0; i < t.columns; i++)
-                assert_true(fabs(t.value.data[r * t.columns + i] * info.lumens / made_cd(s, 15 * i, 5 * r) - 1) < 1e-5);
+                for (int k = 0; k < 4; k++) {
+                    double want = made_cd(s, 15 * (i + k % 2), 5 * (r + k / 2));
+                    assert_true(fabs(t.cells.data[4 * (r * t.columns + i) + k] * info.lumens / want - 1) < 1e-5);
+                }
         photometry_table_free(&t);
         noc_profile_destroy(p);
     }
-    const double zero = 0, gamma[] = { 0, 30, 85, 95, 180 }, cd[] = { 3, 3, 2, 0, 0 };
-    noc_profile *p = NULL;
-    assert_int_equal(noc_profile_create(NULL, &(noc_profile_params){ NULL, 1, 5, &zero, gamma, cd, 0 }, &p), NOC_OK);
-    assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
-    assert_true(t.gamma_max == 90 && !t.upward);
-    photometry_table_free(&t);
-    noc_profile_destroy(p);
+}
+
+/* Light goes on to the first angle without any, beyond the horizon, too, and begins at the file's first angle. Fluxes
+ * by hand: of 1 cd up to 60 degrees that falls to 0 at 180, 2 pi (1/2 + (sin u - u cos u) / u) with u = 2 pi / 3. */
+static void test_table_ends(void **state) {
+    const double zero = 0, u = 2 * M_PI / 3, beyond = 2 * M_PI * (.5 + (sin(u) - u * cos(u)) / u);
+    static const struct {
+        double gamma[5], cd[5];
+        int gammas, rows;
+        double last, at, cd_at, lumens;
+        bool upward;
+    } cases[] = {
+        { { 0, 60, 180 }, { 1, 1, 0 }, 3, 3, 180, 120, .5, 0, true },
+        { { 0, 30, 85, 95, 180 }, { 3, 3, 2, 0, 0 }, 5, 19, 95, 90, 1, NAN, true },
+        { { 0, 30, 60, 90, 180 }, { 1, 1, 1, 0, 0 }, 5, 3, 90, 60, 1, NAN, false },
+        { { 0, 45, 60 }, { 1, 1, 1 }, 3, 4, 60, 45, 1, M_PI, false },
+        { { 90, 135, 180 }, { 1, 1, 1 }, 3, 4, 180, 135, 1, 2 * M_PI, true },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        noc_profile *p = NULL;
+        photometry_table t;
+        noc_profile_params params = { NULL, 1, cases[i].gammas, &zero, cases[i].gamma, cases[i].cd, 0 };
+        assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_OK);
+        assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
+        if (t.gamma_max != cases[i].last || t.upward != cases[i].upward || t.rows != cases[i].rows)
+            fail_msg("%zu: %d rows to %g degrees", i, t.rows, t.gamma_max);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        double lumens = isnan(cases[i].lumens) ? info.lumens : cases[i].lumens > 0 ? cases[i].lumens : beyond;
+        int row = (int)lround(cases[i].at / t.gamma_max * t.rows);
+        float upper = t.cells.data[4 * (row - 1) + 2], lower = row < t.rows ? t.cells.data[4 * row] : upper;
+        assert_true(fabs(lower * lumens / cases[i].cd_at - 1) < 1e-6);
+        if (fabs(upper * lumens / cases[i].cd_at - 1) > 1e-6)
+            fail_msg("%zu: %g, not %g", i, upper * lumens, cases[i].cd_at);
+        if (cases[i].gamma[0] > 0) /* none below */
+            assert_true(t.cells.data[4 + 2] == 0 && t.cells.data[4 * 2] > 0);
+        photometry_table_free(&t);
+        noc_profile_destroy(p);
+    }
 }
 
 int main(void) {
@@ -312,12 +409,15 @@ int main(void) {
         cmocka_unit_test(test_editions),
         cmocka_unit_test(test_factors),
         cmocka_unit_test(test_types),
+        cmocka_unit_test(test_own_angles),
+        cmocka_unit_test(test_own_table),
         cmocka_unit_test(test_street),
         cmocka_unit_test(test_bad),
         cmocka_unit_test(test_bad_eulumdat),
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_numbers),
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_table_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

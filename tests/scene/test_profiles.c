@@ -1,7 +1,19 @@
 /* Lights with profiles in a scene: lumens, frames, models, edits, and what is refused. */
+#include "../core/core_test.h"
 #include "../light/profiles.h"
 #include "../memory.h"
+#include "core/profile.h"
 #include "scene/scene.h"
+
+struct core_context {
+    const float *cells;
+};
+
+FN profile_cell profile_load(CTX u32 place) {
+    profile_cell c;
+    memcpy(&c, ctx->cells + 4 * (size_t)place, sizeof(c));
+    return c;
+}
 
 static noc_profile *cosine(void) { /* 0 to 90, uneven around */
     double c[] = { 0, 90, 180, 270 }, gamma[] = { 0, 30, 60, 90 }, cd[16];
@@ -50,6 +62,57 @@ static void test_light(void **state) {
     }
     noc_profile_destroy(p);
     noc_scene_destroy(s);
+}
+
+/* Files of types A and B as lights look them up: their own intensities a lumen, linear in their own angles, in all
+ * directions. The first two end within a half space, the others reach behind the luminaire. */
+static void test_own_angles(void **state) {
+    static const char *const head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 ";
+    static const struct {
+        int type, vertical, horizontal; /* how many angles */
+        const char *angles;
+    } files[] = { { 3, 5, 4, "-15 -5 0 5 20\n-10 -2.5 5 30\n" },
+                  { 2, 5, 4, "-15 -5 0 5 20\n-10 -2.5 5 30\n" },
+                  { 3, 3, 7, "-60 0 90\n-180 -120 -60 0 60 120 180\n" },
+                  { 2, 5, 3, "-150 -20 10 100 170\n0 20 90\n" } };
+    dice d = { 7 };
+    for (size_t i = 0; i < NOC_COUNT(files); i++) {
+        char text[2000];
+        size_t n = (size_t)snprintf(text, sizeof(text), "%s%d %d %d 2 0 0 0 1 1 10\n%s", head, files[i].vertical,
+                                    files[i].horizontal, files[i].type, files[i].angles);
+        for (int k = 0; k < files[i].vertical * files[i].horizontal; k++)
+            n += (size_t)snprintf(text + n, sizeof(text) - n, "%d ", 100 + 700 * (k % 3));
+        noc_scene *s = noc_scene_create(NULL);
+        noc_profile *p = NULL;
+        noc_profile_info info;
+        assert_int_equal(noc_profile_read(NULL, text, n, "own", &p), NOC_OK);
+        noc_profile_get_info(p, &info);
+        assert_int_equal(noc_scene_add_profile(s, p), 1);
+        const struct core_context ctx = { s->profile_cells.data };
+        const v3 a = V3(2, 0, 0), b = V3(0, -2, 0); /* so that the axis is -z, and C 90 is y */
+        double worst = 0;
+        int lit = 0;
+        for (int k = 0; k < 20000; k++) {
+            v3 way = random_direction(&d);
+            if (k % 2)
+                way = normalised(V3(.4f * way.x, .4f * way.y, way.z - 1));
+            double gamma = acos(NOC_CLAMP(-(double)way.z, -1, 1)) * 180 / M_PI;
+            double want = noc_profile_intensity(p, atan2((double)way.y, (double)way.x) * 180 / M_PI, gamma);
+            profile_value have = profile_look(&ctx, 1, a, b, way);
+            lit += want > 0;
+            if (want == 0 || have.here == 0) /* but at the edges both are none */
+                worst += (want > 0) != (have.here > 0);
+            else if (fabs((double)have.here * info.lumens / want - 1) > 1e-3)
+                fail_msg("%zu: %g cd at (%g, %g, %g), not %g", i, (double)have.here * info.lumens, (double)way.x,
+                         (double)way.y, (double)way.z, want);
+            if (want > 0)
+                assert_true(have.beyond <= 0 && have.most >= have.here);
+        }
+        assert_true(lit > 1000 && worst < 4);
+        assert_true(s->profiles.data[0].upward == (i >= 2));
+        noc_profile_destroy(p);
+        noc_scene_destroy(s);
+    }
 }
 
 /* What lists score lights by: of a light that falls off with the cosine, and of an even one, its peak; of a beam of 5
@@ -194,10 +257,9 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light),   cmocka_unit_test(test_strength),         cmocka_unit_test(test_orient),
-        cmocka_unit_test(test_refused), cmocka_unit_test(test_models_and_edits), cmocka_unit_test(test_content),
-        cmocka_unit_test(test_memory)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_light),    cmocka_unit_test(test_own_angles),
+                                        cmocka_unit_test(test_strength), cmocka_unit_test(test_orient),
+                                        cmocka_unit_test(test_refused),  cmocka_unit_test(test_models_and_edits),
+                                        cmocka_unit_test(test_content),  cmocka_unit_test(test_memory) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
