@@ -112,6 +112,12 @@ def hdr(width, height, rows, more=""):
 put("hdr", "plain.hdr", hdr(4, 2, bytes(range(100, 132))))
 put("hdr", "runs.hdr", hdr(10, 3, (b"\2\2\0\x0a" + b"\x8a\x80" * 3 + b"\x84\x81\6abcdef") * 3, "EXPOSURE=2.5\n"))
 put("hdr", "exposed.hdr", hdr(2, 1, b"\x80\x90\xa0\x82" * 2, "# made here\nEXPOSURE=.5\nEXPOSURE=4\n"))
+order = lambda size, rows, more="": ("#?RADIANCE\n%s\n%s\n" % (more, size)).encode() + rows
+put("hdr", "old.hdr", hdr(600, 2, (b"\x80\x40\0\x81" + b"\1\1\1\x56\1\1\1\2" + b"\2\2\xc8\x81") * 2))
+put("hdr", "columns.hdr", order("+X 2 -Y 9", b"\2\2\0\x09" + b"\x89\x80" * 4 + bytes(range(100, 136))))
+put("hdr", "turned.hdr", order("-X 2 +Y 2", bytes(range(100, 116)), "COLORCORR= 1 2 .5\n"))
+put("hdr", "xyze.hdr", order("+Y 1 -X 2", b"\x79\x7f\x8b\x81" * 2, "FORMAT=32-bit_rle_xyze\n"))
+put("hdr", "primaries.hdr", order("-Y 1 +X 1", b"\x79\x7f\x8b\x81", "PRIMARIES=.7 .3 .2 .8 .1 .05 .33 .33\n"))
 put("compare", "exr", parts(exr(5, 4, colours, 0), exr(5, 4, [(b"B", 1), (b"G", 1), (b"R", 1)], 0)))
 put("compare", "png", parts(rgb, png(5, 4, 8, 2, (b"\0" + bytes(15)) * 4)))
 put("compare", "wider", parts(exr(5, 4, colours, 0), exr(6, 4, colours, 0)))
