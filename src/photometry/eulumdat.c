@@ -169,7 +169,7 @@ static noc_status read_grid(photometry_text *t, const ldt *h, photometry_grid *w
         status = number_line(t, "a gamma angle", &whole->gamma.data[i]);
         whole->gamma.len += !status;
     }
-    double factor = (h->absolute ? 1 : h->lumens / 1000) * h->factor;
+    double factor = (h->absolute ? 1 : h->lumens / 1000) * h->factor; /* absolute: for now (choose_reading) */
     for (long i = 0; i < stored_planes(h) * h->gammas && !status; i++) {
         double x;
         status = number_line(t, "an intensity", &x);
@@ -185,6 +185,16 @@ static noc_status read_grid(photometry_text *t, const ldt *h, photometry_grid *w
             status = noc_no_memory(t->log, t->name);
     array_free(&stored);
     return status;
+}
+
+/* A negative number of lamps says that the photometry is absolute. Some tools write candela then, others cd/klm as
+ * ever: the reading counts whose integral is nearer to the flux that the file states. */
+static const char *choose_reading(noc_profile *p, const ldt *h) {
+    double stated = h->lumens * (h->lor > 0 ? h->lor / 100 : 1), per_klm = h->lumens / 1000, made = p->info.lumens;
+    if (!(stated > 0) || fabs(log(made * per_klm / stated)) >= fabs(log(made / stated)))
+        return "EULUMDAT, absolute";
+    photometry_scale(p, per_klm);
+    return "EULUMDAT, absolute in cd/klm";
 }
 
 static noc_status read_body(photometry_text *t, noc_profile *p) {
@@ -206,7 +216,7 @@ static noc_status read_body(photometry_text *t, noc_profile *p) {
         status = photometry_fill(p, &g, t->log, t->name, line);
     if (!status) {
         noc_profile_info *info = &p->info;
-        info->format = h.absolute ? "EULUMDAT, absolute" : "EULUMDAT";
+        info->format = h.absolute ? choose_reading(p, &h) : "EULUMDAT";
         info->symmetry = symmetries[h.symmetry];
         info->planes = (int)stored_planes(&h);
         photometry_face_street(p, 90);

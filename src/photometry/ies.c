@@ -1,4 +1,5 @@
-/* IES LM-63, of 1986 (without a first line), 1991, 1995, 2002 and 2019. */
+/* IES LM-63, of 1986 (without a first line), 1991, 1995, 2002 and 2019. First lines that are spelled otherwise are read
+ * as the nearest edition. */
 #include "photometry/photometry.h"
 
 #include <ctype.h>
@@ -28,25 +29,6 @@ static const char *tilt_of(const char *line, size_t n) {
     return s;
 }
 
-static bool probe(const char *head, size_t size) {
-    photometry_text t = { head, head + size, "", NULL, 0 };
-    const char *line;
-    size_t n;
-    for (int i = 0; i < 60 && photometry_line(&t, &line, &n); i++) {
-        if (i == 0 && starts(line, n, "\xef\xbb\xbf")) {
-            line += 3;
-            n -= 3;
-        }
-        if (i == 0 && (starts(line, n, "IESNA") || starts(line, n, "IES:LM-63")))
-            return true;
-        if (tilt_of(line, n)) /* 1986 */
-            return true;
-        if (memchr(line, 0, n))
-            return false;
-    }
-    return false;
-}
-
 static const struct {
     const char *begins, *name;
     int year;
@@ -55,6 +37,78 @@ static const struct {
                  { "IESNA:LM-63-1995", "IES LM-63-1995", 1995 }, { "IESNA:LM-63-2002", "IES LM-63-2002", 2002 },
                  { "IESNA:LM-63-2019", "IES LM-63-2019", 2019 }, { "IES:LM-63-2019", "IES LM-63-2019", 2019 },
                  { "IESNA86", "IES LM-63-1986", 1986 },          { "IESNA:LM-63-1986", "IES LM-63-1986", 1986 } };
+
+enum { USUAL_YEAR = 2002 }; /* where a first line names no year */
+
+static bool skip_word(const char **s, const char *word) {
+    size_t n = strlen(word);
+    bool there = !strncmp(*s, word, n);
+    *s += there ? n : 0;
+    return there;
+}
+
+/* The year that a first line means whose letters and digits begin as those of LM-63 do ("IESNA: LM-63-2002", "IES
+ * LM-63-02", "ANSI/IES LM63", "IESNA 91"): 0 where it names none. Returns false for other lines: they are labels. */
+static bool header_year(const char *line, size_t n, int *year) {
+    char text[32] = "";
+    size_t length = 0;
+    for (size_t i = 0; i < n && length < sizeof(text) - 1; i++)
+        if (isalnum((unsigned char)line[i]))
+            text[length++] = (char)toupper((unsigned char)line[i]);
+    const char *s = text;
+    (void)skip_word(&s, "ANSI");
+    bool society = skip_word(&s, "IESNA"), sure = society || !skip_word(&s, "IES");
+    if (!skip_word(&s, "LM63") && !(society && sure))
+        return false;
+    size_t digits = strspn(s, "0123456789");
+    *year = digits == 4 || digits == 2 ? atoi(s) : 0;
+    if (digits == 2)
+        *year += *year < 80 ? 2000 : 1900;
+    return true;
+}
+
+static int nearest_edition(int year) {
+    int nearest = 0;
+    for (int k = 1; k < (int)NOC_COUNT(editions); k++)
+        if (abs(editions[k].year - year) < abs(editions[nearest].year - year))
+            nearest = k;
+    return nearest;
+}
+
+/* An index of editions, -1: the line is a label of 1986. Reports a line that is spelled otherwise. */
+static int edition_of(const photometry_text *t, const char *line, size_t n) {
+    int year, shown = (int)NOC_MIN(n, 40);
+    for (size_t k = 0; k < NOC_COUNT(editions); k++)
+        if (starts(line, n, editions[k].begins))
+            return (int)k;
+    if (!header_year(line, n, &year))
+        return -1;
+    int edition = nearest_edition(year ? year : USUAL_YEAR);
+    noc_warn(t->log, "%s:%d: \"%.*s\" is %s, read as %s", t->name, t->line, shown, line,
+             editions[edition].year == year ? "spelled otherwise than LM-63 does" : "no edition of LM-63 that is known",
+             editions[edition].name);
+    return edition;
+}
+
+static bool probe(const char *head, size_t size) {
+    photometry_text t = { head, head + size, "", NULL, 0 };
+    const char *line;
+    size_t n;
+    int year;
+    for (int i = 0; i < 60 && photometry_line(&t, &line, &n); i++) {
+        if (i == 0 && starts(line, n, "\xef\xbb\xbf")) {
+            line += 3;
+            n -= 3;
+        }
+        if (i == 0 && header_year(line, n, &year))
+            return true;
+        if (tilt_of(line, n)) /* 1986 */
+            return true;
+        if (memchr(line, 0, n))
+            return false;
+    }
+    return false;
+}
 
 /* Keeps the rest of "[KEY] text" as *to, once. */
 static void keep(noc_profile *p, const char *line, size_t n, const char *key, const char **to) {
@@ -83,11 +137,8 @@ static noc_status read_labels(photometry_text *t, noc_profile *p, header *h, con
             line += 3;
             n -= 3;
         }
-        for (size_t k = 0; i == 0 && k < NOC_COUNT(editions); k++)
-            if (starts(line, n, editions[k].begins))
-                h->edition = (int)k;
-        if (i == 0 && h->edition < 0 && (starts(line, n, "IESNA") || starts(line, n, "IES:LM-63")))
-            return photometry_bad(t, t->line, "an edition of LM-63 that is not known: %.*s", (int)NOC_MIN(n, 40), line);
+        if (i == 0)
+            h->edition = edition_of(t, line, n);
         *tilt = tilt_of(line, n);
         if (*tilt) {
             *tilt_length = (size_t)(line + n - *tilt);

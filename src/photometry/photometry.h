@@ -31,6 +31,8 @@ noc_profile *photometry_new(noc_log *log, const char *name, const char *format);
 /* Takes the grid into the profile: its symmetry by its angles (noc_profile_create), its flux, peak and the rest of
  * info. A grid of type A or B is moved there: `g` is then empty. line: of the file where the angles stand, 0: none. */
 noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, const char *name, int line);
+/* Multiplies the intensities of a profile of type C, and what info has of them, by a positive factor. */
+void photometry_scale(noc_profile *p, double factor);
 /* Sets info's street: C angle c, or the one across from it where more light goes there below the horizon. Files of
  * luminaires that are symmetric across the street differ in which end of it they begin at. */
 void photometry_face_street(noc_profile *p, double c);

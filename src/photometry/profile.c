@@ -301,6 +301,13 @@ noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, con
     return NOC_OK;
 }
 
+void photometry_scale(noc_profile *p, double factor) {
+    for (size_t i = 0; i < p->cd.len; i++)
+        p->cd.data[i] *= factor;
+    p->info.lumens *= factor;
+    p->info.peak *= factor;
+}
+
 void photometry_judge(noc_profile *p, noc_log *log, const char *name) {
     noc_profile_info *info = &p->info;
     double stated = info->lamp_lumens * (isnan(info->lor) ? 1 : info->lor);

@@ -56,23 +56,66 @@ static void test_eulumdat_symmetries(void **state) {
     }
 }
 
+/* How many warnings, and the last one. */
+static int said;
+static char last_said[300];
+static void hear(void *ctx, noc_log_level level, const char *text) {
+    said++;
+    snprintf(last_said, sizeof(last_said), "%s", text);
+}
+
+static void assert_edition(const char *begins, const char *format) {
+    static made m;
+    m.len = 0;
+    put(&m, "%s", begins);
+    put_ies(&m, ABOUT_AXIS, 0, 0, 1);
+    noc_log *log = noc_log_create(&(noc_log_params){ NOC_LOG_WARN, hear, NULL });
+    noc_profile *p = NULL;
+    noc_profile_info info;
+    assert_int_equal(noc_profile_read(log, m.text, m.len, "made", &p), NOC_OK);
+    noc_profile_get_info(p, &info);
+    assert_string_equal(info.format, format);
+    noc_profile_destroy(p);
+    noc_log_destroy(log);
+}
+
 static void test_editions(void **state) {
     static const char *const begins[][2] = { { "A luminaire\nwithout a header\n", "IES LM-63-1986, type C" },
                                              { "IESNA91\n", "IES LM-63-1991, type C" },
                                              { "IESNA:LM-63-1995\r\n", "IES LM-63-1995, type C" },
                                              { "IESNA:LM-63-2002\n[TEST] 1\n", "IES LM-63-2002, type C" },
                                              { "IES:LM-63-2019\n[TEST] 1\n", "IES LM-63-2019, type C" } };
-    static made m;
-    for (size_t i = 0; i < NOC_COUNT(begins); i++) {
-        m.len = 0;
-        put(&m, "%s", begins[i][0]);
-        put_ies(&m, ABOUT_AXIS, 0, 0, 1);
-        noc_profile *p = read_made(&m);
-        noc_profile_info info;
-        noc_profile_get_info(p, &info);
-        assert_string_equal(info.format, begins[i][1]);
-        noc_profile_destroy(p);
+    for (size_t i = 0; i < NOC_COUNT(begins); i++)
+        assert_edition(begins[i][0], begins[i][1]);
+}
+
+/* First lines that begin in a known way: a note of the spelling, or that there is no such edition. */
+static void test_headers(void **state) {
+    static const struct {
+        const char *begins, *format;
+        bool unknown;
+    } headers[] = { { "IESNA: LM-63-2002\n", "IES LM-63-2002, type C", false },
+                    { "IESNA LM-63-2002\n", "IES LM-63-2002, type C", false },
+                    { "IESNA:LM-63-02\n", "IES LM-63-2002, type C", false },
+                    { "iesna:lm_63_1995 \n", "IES LM-63-1995, type C", false },
+                    { "IESNA 91\r\n", "IES LM-63-1991, type C", false },
+                    { "IES LM-63-95\n", "IES LM-63-1995, type C", false },
+                    { "\xef\xbb\xbfIES: LM-63-2002\n", "IES LM-63-2002, type C", false },
+                    { "ANSI/IES LM-63-19\n", "IES LM-63-2019, type C", false },
+                    { "LM-63-1986\n", "IES LM-63-1986, type C", false },
+                    { "IESNA:LM-63-1999\n", "IES LM-63-2002, type C", true },
+                    { "IESNA:LM-63-2077\n", "IES LM-63-2019, type C", true },
+                    { "IESNA:LM-63\n", "IES LM-63-2002, type C", true },
+                    { "IESNA\n", "IES LM-63-2002, type C", true } };
+    for (size_t i = 0; i < NOC_COUNT(headers); i++) {
+        said = 0;
+        assert_edition(headers[i].begins, headers[i].format);
+        if (said != 1 || !strstr(last_said, "made:1: ") || !strstr(last_said, "no edition") == headers[i].unknown)
+            fail_msg("%s: %d warnings: \"%s\"", headers[i].begins, said, last_said);
     }
+    said = 0;
+    assert_edition("IES lamp of the town\n", "IES LM-63-1986, type C"); /* a label */
+    assert_int_equal(said, 0);
 }
 
 /* A ball of 100 cd: multiplied, driven, tilted. */
@@ -217,13 +260,43 @@ static void test_street(void **state) {
     }
 }
 
+/* A negative number of lamps: candela, or cd/klm, whichever makes the flux that is stated, or nearly so. */
+static void test_absolute_eulumdat(void **state) {
+    static made m;
+    m.len = 0;
+    put(&m, "IESNA91\n");
+    put_ies(&m, HALVES, 0, 180, 1);
+    noc_profile *p = read_made(&m);
+    noc_profile_info info;
+    noc_profile_get_info(p, &info);
+    double whole = info.lumens; /* of made_cd */
+    noc_profile_destroy(p);
+    for (int i = 0; i < 4; i++) {
+        double off = i < 2 ? 1 : 1.03, lumens = whole * off;
+        m.len = 0;
+        put_eulumdat(&m, HALVES, i % 2 ? 1000 : lumens / off, 100); /* cd, or cd/klm of the lamps */
+        char *lamps = strstr(m.text, "\n1\nLED\n"), *rest = strdup(strchr(lamps + 8, '\n'));
+        m.len = (size_t)(lamps - m.text);
+        put(&m, "\n-1\nLED\n%.9g%s", lumens, rest);
+        free(rest);
+        p = read_made(&m);
+        noc_profile_get_info(p, &info);
+        assert_string_equal(info.format, i % 2 ? "EULUMDAT, absolute" : "EULUMDAT, absolute in cd/klm");
+        double want = i % 2 ? whole : lumens;
+        if (fabs(info.lumens / want - 1) > 1e-5 || fabs(info.flux_error - (want / lumens - 1)) > 1e-5)
+            fail_msg("%d: %g lm, not %g", i, info.lumens, want);
+        assert_true(fabs(noc_profile_intensity(p, 15, 40) / made_cd(HALVES, 15, 40) - want / whole) < 1e-5);
+        noc_profile_destroy(p);
+    }
+}
+
 static void test_bad(void **state) {
     static const struct {
         const char *text, *says;
     } bad[] = {
         { "", "neither an IES" },
         { "hello\nworld\n", "neither an IES" },
-        { "IESNA:LM-63-2077\nTILT=NONE\n", "bad:1: an edition" },
+        { "IESNA:LM-63-2077\nTILT=NONE\n", "bad:3: ends before the number of lamps" },
         { "IESNA:LM-63-2002\n[TEST] x\n", "bad:2: no line of TILT" },
         { "IESNA:LM-63-2002\nTILT=lamp.tlt\n1 1 1\n", "bad:2: its tilt factors are in a file" },
         { "IESNA91\nTILT=NONE\n1 -1 1\n2 1 1 2 0\n", "ends before the length" },
@@ -407,7 +480,9 @@ int main(void) {
         cmocka_unit_test(test_ies_symmetries),
         cmocka_unit_test(test_eulumdat_symmetries),
         cmocka_unit_test(test_editions),
+        cmocka_unit_test(test_headers),
         cmocka_unit_test(test_factors),
+        cmocka_unit_test(test_absolute_eulumdat),
         cmocka_unit_test(test_types),
         cmocka_unit_test(test_own_angles),
         cmocka_unit_test(test_own_table),
