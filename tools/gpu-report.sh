@@ -191,10 +191,15 @@ run)
 "")
     folder=$(cd "$here/.." && pwd)
     pack "$folder/build/gpu-report"
-    out=$(mktemp -d) || exit 1
-    sh "$folder/build/gpu-report/gpu-report.sh" run "$out"
+    out=$folder/build/gpu-report/out
+    sh "$folder/build/gpu-report/gpu-report.sh" run "$out" >/dev/null &
+    child=$!
+    trap 'kill "$child" 2>/dev/null' TERM INT HUP
+    wait "$child" || wait "$child" # a signal ends the first wait alone
     status=$?
-    mkdir -p "$folder/docs/gpu" && cp "$out"/*.md "$folder/docs/gpu/" && rm -r "$out"
+    for page in "$out"/*.md; do
+        [ -e "$page" ] && mkdir -p "$folder/docs/gpu" && cp "$page" "$folder/docs/gpu/" && echo "docs/gpu/${page##*/}"
+    done
     exit $status
     ;;
 *)

@@ -456,8 +456,9 @@ void cli_print_stats(const render_job *job) {
     double sum = 0;
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         sum += job->pass_seconds[i];
-    printf("\n  %-20s %10s %7s   thread time of a frame (by the clock, all threads), mean of %d\n", "pass", "ms",
-           "share", job->frames);
+    bool gpu = noc_device_get_info(job->device)->backend == NOC_BACKEND_VULKAN;
+    printf("\n  %-20s %10s %7s   %s, mean of %d\n", "pass", "ms", "share",
+           gpu ? "the device's time of a frame" : "thread time of a frame (by the clock, all threads)", job->frames);
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         if (job->pass_seconds[i] > 0)
             printf("  %-20s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,

@@ -122,8 +122,8 @@ noc_status noc_choose_device(const noc_device_info *list, size_t count, const ch
         return noc_error(log, NOC_ERR_ARGUMENT, "device: \"%.60s\" is in several names, pass a number: %s", wanted,
                          text);
     if (!found && wanted)
-        return noc_error(log, NOC_ERR_ARGUMENT, "device: \"%.60s\" is neither number nor part of a name of %s", wanted,
-                         text);
+        return noc_error(log, NOC_ERR_ARGUMENT, "device: \"%.60s\" is neither number nor part of a name; devices: %s",
+                         wanted, text);
     if (!found)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: no usable device: %s", backend, text);
     if (!found->usable)

@@ -86,7 +86,7 @@ test ! -s taken; result $? "commands that do not render take neither" "$(cat tak
 
 if VK_DRIVER_FILES=$tests_driver "$program" --version | grep -Eq '^  vulkan 0 software, [^:]*$'; then
     export VK_DRIVER_FILES="$tests_driver"
-    test "$(each --backend vulkan --device 9 | sed 's/ of 0 .*//')" = \
+    test "$(each --backend vulkan --device 9 | sed 's/; devices: 0 .*//')" = \
         '2 nocturne: device: "9" is neither number nor part of a name' &&
         test "$(each --backend vulkan --device ' ')" = '2 nocturne: device: is empty; pass a number or a part of a name'
     result $? "and numbers that no device has"

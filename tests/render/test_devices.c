@@ -54,8 +54,9 @@ static void a_device_is_named(void **state) {
     assert_string_equal(m, "vulkan: NVIDIA GeForce GTX 1080 is not usable: it lacks VK_KHR_ray_tracing_pipeline");
     assert_int_equal(choose(0, 5, "0", NOC_ERR_UNSUPPORTED, m), -1);
     assert_int_equal(choose(1, 1, "radeon", NOC_ERR_ARGUMENT, m), -1);
-    assert_string_equal(m, "device: \"radeon\" is neither number nor part of a name of 1 llvmpipe (LLVM 15.0.6, 256 "
-                           "bits)");
+    assert_string_equal(
+        m, "device: \"radeon\" is neither number nor part of a name; devices: 1 llvmpipe (LLVM 15.0.6, 256 "
+           "bits)");
     assert_int_equal(choose(0, 5, "5", NOC_ERR_ARGUMENT, m), -1);
     assert_int_equal(choose(0, 5, "-1", NOC_ERR_ARGUMENT, m), -1);
     assert_int_equal(choose(0, 5, " ", NOC_ERR_ARGUMENT, m), -1); /* a part of nearly any name */
