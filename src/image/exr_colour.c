@@ -15,8 +15,9 @@ static const exr_attribute_t *find(exr_reader *r, const char *name, exr_attribut
         return NULL;
     if (a->type == type)
         return a;
-    r->status =
-        noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: its attribute %s is of the type %s", r->name, name, a->type_name);
+    if (r->status == NOC_OK)
+        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: its attribute %s is of a type that is not its own",
+                              r->name, name);
     return NULL;
 }
 
@@ -44,7 +45,7 @@ bool exr_read_colours(exr_reader *r) {
     const exr_attribute_t *neutral = find(r, "adoptedNeutral", EXR_ATTR_V2F);
     const double xy[2] = { neutral ? neutral->v2f->x : 0, neutral ? neutral->v2f->y : 0 };
     bool xyz = is_xyz(&space);
-    if (neutral && !xyz) /* RGB (1, 1, 1) is neutral: OpenEXR's pull request 650 */
+    if (neutral) /* RGB (1, 1, 1) is neutral: OpenEXR's pull request 650 */
         memcpy(space.xy[3], xy, sizeof(xy));
     c->scale = 1;
     if ((a = find(r, "whiteLuminance", EXR_ATTR_FLOAT)))

@@ -221,10 +221,11 @@ static void colours_that_are_none(void **state) {
     begin(&f, false);
     add_channels(&f, "B G R");
     add_size(&f, 1);
+    attribute(&f, "adoptedNeutral", "int", "\1\0\0", 4);
     attribute(&f, "whiteLuminance", "int", "\1\0\0", 4);
     add(&f, "", 1);
     add_row(&f, pixel, 3, 1);
-    read_error(&f, "whiteLuminance is of the type int");
+    read_error(&f, "adoptedNeutral is of a type that is not its own");
 }
 
 static void one_layer_is_the_picture(void **state) {
@@ -262,6 +263,8 @@ static void what_there_is_is_told(void **state) {
     read_error(&f, "2 layers have channels R, G and B: a, b.c.");
     one_pixel(&f, "A a.B a.G b.R", values, &(says){ NULL });
     read_error(&f, "has neither channels R, G, B nor Y; there are A, a.B, a.G, b.R");
+    one_pixel(&f, "a.G a.R b.B", values, &(says){ NULL });
+    read_error(&f, "there are a.G, a.R, b.B");
     one_pixel(&f, "a b c d e f g h i j", values, &(says){ NULL });
     read_error(&f, "there are a, b, c, d, e, f, g, h and 2 more");
     one_pixel(&f, "a\n.B", values, &(says){ NULL });
