@@ -73,6 +73,10 @@ typedef enum noc_lamp_source {
     NOC_SOURCE_COUNT
 } noc_lamp_source;
 
+/* Whose flux a lamp has that has a file's profile: what the lamp's file says, where it says nothing the profile's; or
+ * the one of them alone. */
+typedef enum noc_lamp_flux { NOC_FLUX_ANY, NOC_FLUX_FILE, NOC_FLUX_LAMP } noc_lamp_flux;
+
 /* A rule: lamps that all of its conditions hold for are what it says. Rows of noc_luminaire_options name the fields;
  * one that is 0, NULL or (a number with a point) NaN says nothing. */
 typedef struct noc_luminaire_rule {
@@ -83,6 +87,7 @@ typedef struct noc_luminaire_rule {
     noc_lamp_type type;     /* of fitting */
     noc_lamp_mount mount;
     double watts, lumens; /* of a head. Watts put aside the lumens that the file has, and those of earlier rules */
+    noc_lamp_flux flux;   /* puts aside lumens and watts of earlier rules, as these put it aside */
     double efficacy;      /* lm/W of the luminaire, for its watts */
     double kelvin;        /* puts aside colours said before */
     const char *colour;   /* "#rrggbb", sRGB; beats kelvin in the same rule */

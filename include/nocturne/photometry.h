@@ -42,6 +42,7 @@ typedef struct noc_profile_info {
     double street; /* the C angle that looks across the street: 0 in IES files, 90 in those of C 90-270 and EULUMDAT, or
                     * the one across from it where more light goes there */
     double watts;  /* 0: not told */
+    double kelvin; /* colour temperature by its colour appearance or its labels ("LED 4000K"); 0: not told */
     int lamp_sets; /* EULUMDAT: the first one counts */
     double size[3];            /* luminous opening: width, length, height, m; negative as in IES files: round */
     noc_profile_zones forward; /* the half of it around `street` */

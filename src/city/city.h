@@ -23,6 +23,9 @@ void city_profiles_destroy(city_profiles *profiles);
  * geo_fitting.profile. An error is reported. */
 int city_profiles_builtin(const char *name); /* 0: there is none, not reported */
 noc_status city_profiles_read(city_profiles *profiles, const char *path, const char *name, int *number);
+/* Sets file_lumens, file_watts and file_kelvin to those of the file that a lamp with this fitting has its distribution
+ * from, where there is one. */
+void city_profiles_file(const city_profiles *profiles, geo_fitting *fitting);
 /* "cobra-head 40, post-top 3": which lights have which; NULL: "". */
 void city_profiles_tell(const city_profiles *profiles, char *text, size_t size);
 

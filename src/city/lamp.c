@@ -55,21 +55,33 @@ static bool unit_luminance(const float colour[3], float rgb[3]) {
     return true;
 }
 
-/* False if neither the lamp nor its source tells one. */
+/* False if neither the lamp nor its source nor the file of its profile tells one. */
 static bool told_colour(const geo_lamp *lamp, float rgb[3]) {
     if (unit_luminance(lamp->rgb, rgb) || unit_luminance(sources[lamp->source].rgb, rgb))
         return true;
     double kelvin = known(lamp->kelvin, sources[lamp->source].kelvin);
+    kelvin = known(kelvin, lamp->fitting ? known(lamp->fitting->file_kelvin, 0) : 0);
     if (kelvin > 0)
         noc_kelvin_rgb(kelvin, rgb);
     return kelvin > 0;
 }
 
-/* Of one head; 0 if neither the lamp nor its source tells it. */
+/* lm/W of the lamp's watts: what a rule says, else of its source, else of the file of its profile. */
+static double told_efficacy(const geo_lamp *lamp, double file_lumens) {
+    const geo_fitting *f = lamp->fitting;
+    double of_source = sources[lamp->source].lumens_per_watt;
+    double of_file = f && lamp->source == GEO_SOURCE_UNKNOWN ? file_lumens / known(f->file_watts, NAN) : NAN;
+    return known(f ? f->efficacy : NAN, known(of_file, of_source));
+}
+
+/* Of one head; 0 if neither the lamp nor its source nor the file of its profile tells it. */
 static double told_lumens(const geo_lamp *lamp) {
-    double efficacy = lamp->fitting ? lamp->fitting->efficacy : NAN;
-    double watts = known(lamp->watts, 0) * known(efficacy, sources[lamp->source].lumens_per_watt);
-    return known(lamp->lumens, watts > 0 ? watts : sources[lamp->source].lumens);
+    noc_lamp_flux flux = lamp->fitting ? lamp->fitting->flux : NOC_FLUX_ANY;
+    double file = lamp->fitting && flux != NOC_FLUX_LAMP ? known(lamp->fitting->file_lumens, 0) : 0;
+    if (flux == NOC_FLUX_FILE && file > 0)
+        return file;
+    double watts = known(lamp->watts, 0) * told_efficacy(lamp, file);
+    return known(lamp->lumens, watts > 0 ? watts : known(file, sources[lamp->source].lumens));
 }
 
 bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
@@ -111,7 +123,7 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
                   .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
     f.lumens = known(told_lumens(lamp), params->lumens);
-    f.watts = known(lamp->watts, NAN);
+    f.watts = known(lamp->watts, known(f.ruled.file_watts, NAN));
     if (lamp->type == GEO_LAMP_FLOOD)
         f.kind = FITTING_FLOOD;
     else if (lamp->type == GEO_LAMP_LANTERN || (f.height < 3.5 && lamp->mount != GEO_MOUNT_SUSPENDED))

@@ -8,7 +8,8 @@ typedef struct kept_profile {
     noc_profile *profile;
     int index; /* in the scene; 0: not there yet */
     size_t lights;
-    char *name, *path; /* of files; NULL: of built-in ones */
+    char *name, *path;            /* of files; NULL: of built-in ones */
+    double lumens, watts, kelvin; /* of files; NaN: not told */
 } kept_profile;
 
 struct city_profiles {
@@ -16,6 +17,29 @@ struct city_profiles {
     NOC_ARRAY(kept_profile) of; /* CITY_PROFILES of kinds, and those of rules */
     bool own;
 };
+
+/* Limits of what hangs over streets: bollards have some 200 lm, high masts 200,000; bare globes send a half upward. */
+#define LEAST_LUMENS 100
+#define MOST_LUMENS 500000
+#define MOST_UPWARD (2. / 3)
+
+/* Reads a file, and reports one that can be no street light. */
+static noc_status load(kept_profile *k, const char *path, noc_log *log) {
+    noc_profile_info info;
+    noc_status status = noc_profile_load(log, path, &k->profile);
+    if (status)
+        return status;
+    noc_profile_get_info(k->profile, &info);
+    k->lumens = info.lumens;
+    k->watts = info.watts > 0 ? info.watts : NAN;
+    k->kelvin = info.kelvin > 0 ? info.kelvin : NAN;
+    if (info.upward > MOST_UPWARD)
+        noc_warn(log, "%s: sends %.0f %% of its light upward, as no street light does", path, 100 * info.upward);
+    if (info.lumens < LEAST_LUMENS || info.lumens > MOST_LUMENS)
+        noc_warn(log, "%s: makes %.3g lm, as no street light does: lamps without lumens of their own shine by it", path,
+                 info.lumens);
+    return NOC_OK;
+}
 
 city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_status *status) {
     city_profiles *p = noc_calloc(1, sizeof(*p));
@@ -30,7 +54,7 @@ city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_stat
         *status = !p->own || p->of.data[CITY_PROFILE_OWN].name ? NOC_OK : noc_scene_out_of_memory(scene);
     }
     if (!*status && p->own)
-        *status = noc_profile_load(scene->log, file, &p->of.data[CITY_PROFILE_OWN].profile);
+        *status = load(&p->of.data[CITY_PROFILE_OWN], file, scene->log);
     if (!*status)
         return p;
     city_profiles_destroy(p);
@@ -67,7 +91,7 @@ noc_status city_profiles_read(city_profiles *p, const char *path, const char *na
         }
     kept_profile made = { .name = noc_strdup(name), .path = noc_strdup(path) };
     bool room = made.name && made.path && array_reserve(&p->of, p->of.len + 1);
-    noc_status status = room ? noc_profile_load(p->scene->log, path, &made.profile) : noc_scene_out_of_memory(p->scene);
+    noc_status status = room ? load(&made, path, p->scene->log) : noc_scene_out_of_memory(p->scene);
     if (!status) {
         p->of.data[p->of.len++] = made;
         *number = (int)p->of.len;
@@ -80,6 +104,15 @@ noc_status city_profiles_read(city_profiles *p, const char *path, const char *na
 
 static size_t chosen(const city_profiles *p, city_profile_kind kind, int ruled) {
     return ruled > 0 ? (size_t)ruled - 1 : p->own ? CITY_PROFILE_OWN : (size_t)kind;
+}
+
+void city_profiles_file(const city_profiles *p, geo_fitting *f) {
+    size_t i = p && f->profile != GEO_NO_PROFILE ? chosen(p, CITY_PROFILE_COBRA_HEAD, f->profile) : 0;
+    if (i < CITY_PROFILE_OWN)
+        return;
+    f->file_lumens = p->of.data[i].lumens;
+    f->file_watts = p->of.data[i].watts;
+    f->file_kelvin = p->of.data[i].kelvin;
 }
 
 const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled) {

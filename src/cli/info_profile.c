@@ -47,6 +47,8 @@ static void print_profile(const char *path, const noc_profile_info *i) {
     print_flux(i);
     if (i->watts > 0)
         printf("  %-11s %g W, %.1f lm/W\n", "power", i->watts, i->lumens / i->watts);
+    if (i->kelvin > 0)
+        printf("  %-11s %g K\n", "colour", i->kelvin);
     printf("  %-11s %.1f cd at C %g, gamma %g\n", "peak", i->peak, i->peak_c, i->peak_gamma);
     printf("  %-11s %d plane%s, C %g to %g; %d angles, gamma %g to %g\n", "grid", i->planes, i->planes == 1 ? "" : "s",
            i->c_min, i->c_max, i->gammas, i->gamma_min, i->gamma_max);
@@ -78,6 +80,7 @@ static void json_profile(const noc_profile_info *i) {
                     { "light_output_ratio", i->lor },
                     { "flux_error", i->flux_error },
                     { "watts", i->watts },
+                    { "kelvin", i->kelvin > 0 ? i->kelvin : NAN },
                     { "peak_cd", i->peak },
                     { "peak_c", i->peak_c },
                     { "peak_gamma", i->peak_gamma },

@@ -108,9 +108,18 @@ typedef struct geo_fitting {
     double efficacy, radius, tilt, arm; /* lm/W, m, degrees, m; NaN: nothing */
     int profile;                        /* of city_profiles; 0: by its kind; GEO_NO_PROFILE: none */
     int group;                          /* of the scene; 0: none */
+    noc_lamp_flux flux;
+    double file_lumens, file_watts, file_kelvin; /* of the file of its profile; NaN: it has none, or tells none */
 } geo_fitting;
 #define GEO_NO_PROFILE (-1)
-#define geo_no_fitting() ((geo_fitting){ .efficacy = NAN, .radius = NAN, .tilt = NAN, .arm = NAN })
+#define geo_no_fitting()                                                                                               \
+    ((geo_fitting){ .efficacy = NAN,                                                                                   \
+                    .radius = NAN,                                                                                     \
+                    .tilt = NAN,                                                                                       \
+                    .arm = NAN,                                                                                        \
+                    .file_lumens = NAN,                                                                                \
+                    .file_watts = NAN,                                                                                 \
+                    .file_kelvin = NAN })
 
 enum { GEO_LAMP_TAGS = 2048 }; /* bytes of geo_lamp.tags at most, with the 0 */
 

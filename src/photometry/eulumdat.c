@@ -62,6 +62,19 @@ static noc_status skip_lines(photometry_text *t, noc_profile *p, int count) {
     return status;
 }
 
+/* The colour appearance, often a colour temperature; else the lamps' type may name one. */
+static noc_status read_colour(photometry_text *t, noc_profile *p, bool counts) {
+    const char *line;
+    size_t n;
+    noc_status status = next_line(t, "the colour appearance", &line, &n);
+    if (!status && counts) {
+        p->info.kelvin = photometry_kelvin_field(line, n);
+        if (!p->info.kelvin)
+            p->info.kelvin = photometry_kelvin(p->info.lamp, strlen(p->info.lamp));
+    }
+    return status;
+}
+
 static noc_status read_sets(photometry_text *t, noc_profile *p, ldt *h) {
     noc_status status = whole_line(t, "the number of lamp sets", 1, 100, &h->sets);
     for (long i = 0; i < h->sets && !status; i++) {
@@ -72,7 +85,9 @@ static noc_status read_sets(photometry_text *t, noc_profile *p, ldt *h) {
         if (!status)
             status = number_line(t, "the lumens of the lamps", &lumens);
         if (!status)
-            status = skip_lines(t, p, 2); /* colour appearance and rendering */
+            status = read_colour(t, p, i == 0);
+        if (!status)
+            status = skip_lines(t, p, 1); /* colour rendering */
         if (!status && i == 0) {
             status = number_line(t, "the watts", &watts);
             h->absolute = lamps < 0;

@@ -127,6 +127,21 @@ typedef struct header {
     int edition; /* index of editions; -1: 1986 */
 } header;
 
+/* Keywords of the colour temperature itself are the user's: [_CCT], [COLORTEMP], ... */
+static double label_kelvin(const char *line, size_t n) {
+    const char *close = *line == '[' ? memchr(line, ']', n) : NULL;
+    char key[24] = "";
+    if (close && (size_t)(close - line) < sizeof(key))
+        for (size_t i = 0; line + i < close; i++)
+            key[i] = (char)toupper((unsigned char)line[i]);
+    if (!strstr(key, "CCT") && !strstr(key, "COLORTEMP") && !strstr(key, "KELVIN"))
+        return photometry_kelvin(line, n);
+    const char *value = close + 1;
+    while (value < line + n && *value == ' ')
+        value++;
+    return photometry_kelvin_field(value, (size_t)(line + n - value));
+}
+
 /* Up to the line of TILT. */
 static noc_status read_labels(photometry_text *t, noc_profile *p, header *h, const char **tilt, size_t *tilt_length) {
     const char *line, *first = NULL;
@@ -150,6 +165,8 @@ static noc_status read_labels(photometry_text *t, noc_profile *p, header *h, con
         }
         if (!first && n)
             first = line;
+        if (!p->info.kelvin)
+            p->info.kelvin = label_kelvin(line, n);
         keep(p, line, n, "[LUMINAIRE]", &p->info.name);
         keep(p, line, n, "[MANUFAC]", &p->info.manufacturer);
         keep(p, line, n, "[LAMP]", &p->info.lamp);

@@ -44,6 +44,12 @@ void photometry_judge(noc_profile *p, noc_log *log, const char *name);
 double photometry_sine_integral(double t0, double t1, double a, double b, double from, double to);
 double photometry_grid_flux(const photometry_grid *g); /* of types A and B, mirrored where the angles begin at 0 */
 
+/* colour.c: colour temperatures in words. Returns the one that a text names with its unit ("LED 4000K", "3000 K"), 0
+ * where there is none or several that differ. */
+double photometry_kelvin(const char *text, size_t length);
+/* The same of a field that holds nothing else: "3000", and codes of lamps by their rendering ("830" is 3000 K). */
+double photometry_kelvin_field(const char *text, size_t length);
+
 /* lines.c: a text by lines and by numbers. */
 typedef struct photometry_text {
     const char *at, *end, *name;

@@ -53,9 +53,14 @@ static noc_status take_key(void *ctx, const yaml_node_t *key, yaml_node_t *value
         return take_match(t, value);
     words[count++] = "match";
     for (const noc_option *o = t->rows; o->name; o++) {
-        if (!strcmp(name, o->name))
-            return recipe_option(t->file, o, value, t->params);
-        words[count++] = o->name;
+        bool again = o[1].name && !strcmp(o[1].name, o->name); /* a word, or else what the next row takes */
+        const char *text = recipe_text(value);
+        if (strcmp(name, o->name) || (again && !(text && !noc_option_set(o, t->params, text, NULL)))) {
+            if (!again)
+                words[count++] = o->name;
+            continue;
+        }
+        return recipe_option(t->file, o, value, t->params);
     }
     return recipe_unknown(t->file, key, t->what, words, count);
 }

@@ -155,7 +155,7 @@ static const noc_option import_options[] = {
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
     BOOL(P, profiles, "profiles", "City", "lamps shine as street lights do: light distributions by their kind"),
     TEXT(P, lamp_body, "lamp-body", "City", "FILE", "OBJ, PLY or glTF that lamps look like, a head or a whole one"),
-    TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, for built-in ones"),
+    TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, and of flux untold"),
     TEXTS(P, group_states, "group", "City", "NAME=STATE", "lights of a group: off, 0.3, 2200K, #ffb060; repeatable"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities, and those of builtin:city; auto: on"),
@@ -203,6 +203,8 @@ static const noc_option luminaire_options[] = {
     CHOICE(P, type, "type", "Luminaires", "any|street|lantern|flood", "the fitting"),
     CHOICE(P, mount, "mount", "Luminaires", "any|pole|wall|suspended", "what it hangs on"),
     REAL(P, watts, "watts", "Luminaires", 0.5, 5000, "W", "of a head"),
+    /* two rows of one name: a word, or a number */
+    CHOICE(P, flux, "lumens", "Luminaires", "any|file|lamp", "of a head: those of its profile's file, or its own"),
     REAL(P, lumens, "lumens", "Luminaires", 1, 500000, "lm", "of a head"),
     REAL(P, efficacy, "efficacy", "Luminaires", 0.1, 400, "lm/W", "of the luminaire, for its watts"),
     REAL(P, kelvin, "kelvin", "Luminaires", 1000, 25000, "K", "colour temperature"),

@@ -62,7 +62,7 @@ expect "init of a file that is not there" 1 'none.gml' init town none.gml
 result $? "what failed leaves no folder"
 run init town city.gml 'a "b" c.gml' builtin:single
 result $status "init"
-printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 1\n0 45 90\n0\n100 80 0\n' >lamp.ies
+printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n159154.943 159154.943\n' >lamp.ies
 printf 'lat,lon\n48.1,11.5\n' >plain.csv
 run init files city.gml --lamp-profile lamp.ies --lamps plain.csv
 grep -q "^  profile: \"$PWD/lamp.ies\"" files/city.yaml && grep -q "^  files: \[\"$PWD/plain.csv\"\]" files/city.yaml &&
@@ -71,7 +71,7 @@ result $? "files that init is told are found from the recipe" "$(cat files/city.
 grep -q "draw it: $program render $PWD/files/city.yaml" out
 result $? "init shows the program as it was called" "$(cat out)"
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\100\040\200\040\100\200\201' >sky.hdr
-run render city.gml --infer-lamps --lamp-lumens 1000000 --lamp-profile lamp.ies --environment sky.hdr \
+run render city.gml --infer-lamps --lamp-profile lamp.ies --environment sky.hdr \
     --environment-light --environment-lux 12000 --frames 1 --size 48x32 -o a.png
 grep -Eq 'lamps 1 \(1,000 klm\), windows 28 \([0-9]\.[0-9]+ klm\)' out &&
     grep -Eq 'profiles  lamp.ies [0-9]+$' out &&

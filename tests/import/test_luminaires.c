@@ -278,6 +278,89 @@ static void test_profiles_of_rules(void **state) {
     write_file("road.ies", profile);
 }
 
+/* A file's flux, watts and colour are those of lamps that tell none. It is 1000 / 2 pi cd over a half space, so that
+ * it has 1,000 lm, 50 a watt. */
+static void test_what_files_give(void **state) {
+    (void)state;
+    enum { FLUXES = 4 };
+    static const char *const ids[] = { "a", "c", "d", "f" }; /* sodium, HPS, LED without watts; nothing but watts */
+    static const double lumens[FLUXES][4] = { { 70 * 78, 150 * 78, 1000, 20 * 50 },
+                                              { 1000, 1000, 1000, 1000 },
+                                              { 70 * 78, 150 * 78, 5000, 20 * 80 },
+                                              { 800, 1000, 800, 800 } };
+    char base[300];
+    snprintf(base, sizeof(base), "%s/", folder);
+    write_file("road.ies", "IESNA:LM-63-2002\n[LAMP] LED 2200K\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n"
+                           "159.154943 159.154943\n");
+    noc_luminaire_rule rules[] = { RULE(.profile = "road.ies", .profile_base = base),
+                                   RULE(ASKS({ "id", "c" }), .flux = NOC_FLUX_FILE) };
+    noc_import_params params = noc_import_default_params();
+    params.luminaires = rules;
+    params.each_lamp = true;
+    for (int i = 0; i < FLUXES + 1; i++) {
+        bool all = i == FLUXES; /* --lamp-profile, without rules */
+        params.luminaire_count = all ? 0 : i == 3 ? 2 : 1;
+        params.lamp_profile = all ? in_folder("road.ies") : NULL;
+        rules[0].flux = i == 1 ? NOC_FLUX_FILE : i == 2 ? NOC_FLUX_LAMP : NOC_FLUX_ANY;
+        rules[0].lumens = i == 3 ? 800 : (double)NAN;
+        loaded l = load_file("lamps.csv", params);
+        assert_int_equal(l.status, NOC_OK);
+        assert_string_equal(told, "");
+        for (int k = 0; k < 4; k++) {
+            double have = light_of(&l, ids[k]).lumens, want = lumens[all ? 0 : i][k];
+            if (fabs(have / want - 1) > 1e-5)
+                fail_msg("%d: %s has %g lm, not %g", i, ids[k], have, want);
+        }
+        noc_light_info d = light_of(&l, "d"), a = light_of(&l, "a");
+        float warm[3], sodium[3];
+        noc_kelvin_rgb(2200, warm);
+        noc_kelvin_rgb(2050, sodium);
+        assert_near(d.light.emission[0] / d.light.emission[1], warm[0] / warm[1]);
+        assert_near(a.light.emission[0] / a.light.emission[1], sodium[0] / sodium[1]);
+        const noc_report_file *file = noc_report_get_file(l.report, 0);
+        assert_int_equal(file->lamps_assumed[NOC_LAMP_FLUX], i == 2);
+        assert_int_equal(file->lamps_assumed[NOC_LAMP_COLOUR], 0);
+        for (size_t k = 0; noc_report_get_lamp(l.report, k); k++) {
+            const noc_report_lamp *lamp = noc_report_get_lamp(l.report, k);
+            noc_light_info light;
+            noc_scene_get_light(l.scene, lamp->light, &light);
+            if (!strcmp(light.light.name, "d"))
+                assert_true(lamp->watts == 20);
+        }
+        unload(&l);
+    }
+    /* a rule that asks for what there is not */
+    params.luminaire_count = 1;
+    params.lamp_profile = NULL;
+    rules[0] = RULE(.flux = NOC_FLUX_FILE);
+    loaded l = load_file("lamps.csv", params);
+    assert_true(strstr(told, "\"lumens: file\" of 6 lamps whose profile is no file"));
+    assert_near(light_of(&l, "a").lumens, 70 * 78);
+    unload(&l);
+    write_file("road.ies", profile);
+}
+
+/* What cannot hang over a street. */
+static void test_no_street_light(void **state) {
+    (void)state;
+    static const char *const files[][2] = { { "90 180\n0\n500 500\n", "sends 100 % of its light upward" },
+                                            { "0 90\n0\n.159154943 .159154943\n", "makes 1 lm" },
+                                            { "0 180\n0\n500 0\n", "" } }; /* a globe's half upward */
+    noc_import_params params = noc_import_default_params();
+    for (size_t i = 0; i < 3; i++) {
+        char text[200];
+        snprintf(text, sizeof(text), "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n%s", files[i][0]);
+        write_file("road.ies", text);
+        params.lamp_profile = in_folder("road.ies");
+        loaded l = load_file("lamps.csv", params);
+        assert_int_equal(l.status, NOC_OK);
+        if (!*files[i][1] ? *told : !strstr(told, files[i][1]))
+            fail_msg("%zu: %s", i, told);
+        unload(&l);
+    }
+    write_file("road.ies", profile);
+}
+
 #define GROUP(...) ((noc_group_rule){ NOC_GROUP_DEFAULTS(NOC_DEFAULT_IN_C) __VA_ARGS__ })
 
 static void test_groups(void **state) {
@@ -424,6 +507,8 @@ int main(void) {
         cmocka_unit_test(test_conditions_reach_the_helper),
         cmocka_unit_test(test_what_rules_make),
         cmocka_unit_test(test_profiles_of_rules),
+        cmocka_unit_test(test_what_files_give),
+        cmocka_unit_test(test_no_street_light),
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_what_is_wrong),
         cmocka_unit_test(test_they_are_told_of_a_file),

@@ -290,6 +290,46 @@ static void test_absolute_eulumdat(void **state) {
     }
 }
 
+static void test_colours(void **state) {
+    static const struct {
+        const char *label;
+        double kelvin;
+    } ies[] = { { "[LAMP] LED 4000K", 4000 },
+                { "[LUMINAIRE] Road 38 W 2200 K CRI 70", 2200 },
+                { "[_CCT] 3000", 3000 },
+                { "[_CCT] 830", 3000 },
+                { "[LAMP] 2700K-6500K tunable", 0 },
+                { "[LAMP] HPS 250W 28000 LM", 0 },
+                { "[LUMCAT] A4000K1", 0 } };
+    static const struct {
+        const char *type, *colour;
+        double kelvin;
+    } ldt[] = { { "LED", "3000", 3000 },        { "LED", "4000 K", 4000 }, { "T16 35W", "840", 4000 },
+                { "LED 2700K", "1B/80", 2700 }, { "SON-T", "", 0 },        { "LED", "warm white", 0 } };
+    static made m;
+    noc_profile_info info;
+    for (size_t i = 0; i < NOC_COUNT(ies) + NOC_COUNT(ldt); i++) {
+        size_t k = i - NOC_COUNT(ies);
+        bool labels = i < NOC_COUNT(ies);
+        m.len = 0;
+        if (labels) {
+            put(&m, "IESNA:LM-63-2002\n%s\n", ies[i].label);
+            put_ies(&m, ABOUT_AXIS, 0, 0, 1);
+        } else {
+            put_eulumdat(&m, HALVES, 1000, 100);
+            char *lamps = strstr(m.text, "\nLED\n1000\n3000\n"), *rest = strdup(lamps + 14);
+            m.len = (size_t)(lamps - m.text);
+            put(&m, "\n%s\n1000\n%s%s", ldt[k].type, ldt[k].colour, rest);
+            free(rest);
+        }
+        noc_profile *p = read_made(&m);
+        noc_profile_get_info(p, &info);
+        if (info.kelvin != (labels ? ies[i].kelvin : ldt[k].kelvin))
+            fail_msg("%s: %g K", labels ? ies[i].label : ldt[k].colour, info.kelvin);
+        noc_profile_destroy(p);
+    }
+}
+
 static void test_bad(void **state) {
     static const struct {
         const char *text, *says;
@@ -477,21 +517,14 @@ static void test_table_ends(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ies_symmetries),
-        cmocka_unit_test(test_eulumdat_symmetries),
-        cmocka_unit_test(test_editions),
-        cmocka_unit_test(test_headers),
-        cmocka_unit_test(test_factors),
-        cmocka_unit_test(test_absolute_eulumdat),
-        cmocka_unit_test(test_types),
-        cmocka_unit_test(test_own_angles),
-        cmocka_unit_test(test_own_table),
-        cmocka_unit_test(test_street),
-        cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_bad_eulumdat),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_ies_symmetries), cmocka_unit_test(test_eulumdat_symmetries),
+        cmocka_unit_test(test_editions),       cmocka_unit_test(test_headers),
+        cmocka_unit_test(test_factors),        cmocka_unit_test(test_absolute_eulumdat),
+        cmocka_unit_test(test_colours),        cmocka_unit_test(test_types),
+        cmocka_unit_test(test_own_angles),     cmocka_unit_test(test_own_table),
+        cmocka_unit_test(test_street),         cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_bad_eulumdat),   cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_numbers),        cmocka_unit_test(test_table),
         cmocka_unit_test(test_table_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

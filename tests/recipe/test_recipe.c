@@ -188,6 +188,28 @@ static void test_rules_and_groups(void **state) {
 }
 
 /* Every row of the tables is a key, under its name or in a section, but for those of who reads. */
+/* lumens is a number, or whose they are; written as it was read. */
+static void test_whose_lumens(void **state) {
+    (void)state;
+    noc_recipe *r;
+    noc_import_params params = noc_import_default_params();
+    assert_int_equal(
+        load("nocturne: 1\ninputs: [a]\nluminaires:\n- {lumens: file}\n- {lumens: lamp}\n- {lumens: 800}\n", &r),
+        NOC_OK);
+    noc_recipe_lists(r, &params);
+    assert_int_equal(params.luminaire_count, 3);
+    const noc_luminaire_rule *rules = params.luminaires;
+    assert_true(rules[0].flux == NOC_FLUX_FILE && isnan(rules[0].lumens));
+    assert_true(rules[1].flux == NOC_FLUX_LAMP && isnan(rules[1].lumens));
+    assert_true(rules[2].flux == NOC_FLUX_ANY && rules[2].lumens == 800);
+    char *text;
+    const noc_recipe_info info = { .name = "n", .luminaires = rules, .luminaire_count = 3 };
+    assert_int_equal(noc_recipe_write(&info, NULL, 0, NULL, &text), NOC_OK);
+    assert_non_null(strstr(text, "- { lumens: \"file\" }\n  - { lumens: \"lamp\" }\n  - { lumens: \"800\" }\n"));
+    free(text);
+    noc_recipe_destroy(r);
+}
+
 static void test_every_option_is_a_key(void **state) {
     (void)state;
     const noc_option *tables[] = { noc_import_options(), noc_city_options(), noc_builtin_options(),
@@ -290,6 +312,7 @@ static const struct {
     { HEAD "luminaires:\n- {kelvin: 3}\n", 4, "outside 1000 to 25000" },
     { HEAD "luminaires:\n- {kelvin: [3]}\n", 4, "kelvin is one value" },
     { HEAD "luminaires:\n- {kelvin: }\n", 4, "kelvin has no value" },
+    { HEAD "luminaires:\n- {lumens: files}\n", 4, "lumens" },
     { HEAD "luminaires:\n- {shape: cube}\n", 4, "none of fitting|point|sphere|disc" },
     { HEAD "luminaires:\n- [a]\n", 4, "a luminaire must be keys and their values" },
     { HEAD "luminaires:\n- {match: [a]}\n", 4, "match must be keys and their values" },
@@ -489,6 +512,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_that_it_says),
         cmocka_unit_test(test_rules_and_groups),
+        cmocka_unit_test(test_whose_lumens),
         cmocka_unit_test(test_every_option_is_a_key),
         cmocka_unit_test(test_sections),
         cmocka_unit_test(test_what_is_wrong_is_told_with_its_line),

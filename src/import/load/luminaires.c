@@ -15,6 +15,7 @@ struct luminaires {
     int *profile;                /* of each rule: geo_fitting.profile */
     int *group;                  /* of the scene, of each of params */
     noc_report_rule *matched;    /* in the report's arena */
+    size_t fileless;             /* lamps that are to have the flux of a file, and have none */
 };
 
 /* Those that lights are of which no group takes, by their class; a group that is called so and asks nothing says how
@@ -160,18 +161,30 @@ bool luminaires_ask_roads(const importer *im) { return lamp_conditions_ask_roads
 
 /* ---- lamps ---- */
 
-static void apply(const noc_luminaire_rule *r, int profile, geo_lamp *lamp, geo_fitting *f) {
+/* The flux as a rule says it, or as it was told before all rules. */
+static void apply_flux(const noc_luminaire_rule *r, const geo_lamp *told, geo_lamp *lamp, geo_fitting *f) {
+    if (r->flux) {
+        lamp->lumens = told->lumens;
+        lamp->watts = told->watts;
+        f->flux = r->flux;
+    }
+    if (isfinite(r->watts)) {
+        lamp->watts = r->watts;
+        lamp->lumens = NAN;
+    }
+    lamp->lumens = isfinite(r->lumens) ? r->lumens : lamp->lumens;
+    if (!r->flux && (isfinite(r->watts) || isfinite(r->lumens)))
+        f->flux = NOC_FLUX_ANY;
+}
+
+static void apply(const noc_luminaire_rule *r, int profile, const geo_lamp *told, geo_lamp *lamp, geo_fitting *f) {
     if (r->source)
         lamp->source = (int)r->source;
     if (r->type)
         lamp->type = (int)r->type - NOC_LAMP_STREET + GEO_LAMP_STREET;
     if (r->mount)
         lamp->mount = (int)r->mount - NOC_LAMP_POLE + GEO_MOUNT_POLE;
-    if (isfinite(r->watts)) {
-        lamp->watts = r->watts;
-        lamp->lumens = NAN;
-    }
-    lamp->lumens = isfinite(r->lumens) ? r->lumens : lamp->lumens;
+    apply_flux(r, told, lamp, f);
     if (isfinite(r->kelvin)) {
         lamp->kelvin = r->kelvin;
         lamp->rgb[0] = lamp->rgb[1] = lamp->rgb[2] = -1;
@@ -224,13 +237,15 @@ void luminaires_dress(importer *im, const input *in, lamp_roads roads, geo_lamp 
         if (!lamp_rule_holds(l->conditions, i, &of))
             continue;
         l->matched[i].lamps++;
-        apply(r, l->profile[i], lamp, fitting);
+        apply(r, l->profile[i], &told, lamp, fitting);
         said |= isfinite(r->height) ? 1u << NOC_LAMP_HEIGHT : 0;
-        said |= isfinite(r->lumens) || isfinite(r->watts) ? 1u << NOC_LAMP_FLUX : 0;
+        said |= r->flux == NOC_FLUX_FILE || isfinite(r->lumens) || isfinite(r->watts) ? 1u << NOC_LAMP_FLUX : 0;
         if (im->params->each_lamp && n < sizeof(places) - 1)
             n += (size_t)noc_snprintf(places + n, sizeof(places) - n, "%s%s", n ? "; " : "", l->matched[i].place);
     }
     fitting->group = luminaires_group(im, &of);
+    city_profiles_file(im->profiles, fitting);
+    l->fileless += fitting->flux == NOC_FLUX_FILE && im->profiles && isnan(fitting->file_lumens);
     lamp->fitting = fitting;
     if (im->params->each_lamp && !im->inspect)
         each_lamp_begin(im, in, roads, lamp, places, said);
@@ -339,6 +354,9 @@ noc_status luminaires_finish(importer *im) {
     for (size_t i = 0; i < p->luminaire_count && !im->inspect; i++)
         if (!im->luminaires->matched[i].lamps)
             warn_idle(im, i);
+    if (im->luminaires->fileless)
+        noc_warn(im->log, "rules: \"lumens: file\" of %zu lamp%s whose profile is no file: their flux is their own",
+                 im->luminaires->fileless, im->luminaires->fileless == 1 ? "" : "s");
     for (size_t i = 0; i < p->group_count && !status; i++)
         status = start_group(im, &p->groups[i], im->luminaires->group[i]);
     return status ? status : luminaires_say(im);
