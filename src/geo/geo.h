@@ -125,10 +125,11 @@ enum { GEO_LAMP_TAGS = 2048 }; /* bytes of geo_lamp.tags at most, with the 0 */
 
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
-    double xyz[3];    /* file CRS; xyz[2] NaN: stands on the ground */
-    double height;    /* of the light above the ground, m */
-    double direction; /* degrees clockwise from north the head faces, NaN: none */
-    int count;        /* heads on the pole; 0 = unknown */
+    double xyz[3];      /* file CRS; xyz[2] NaN: stands on the ground */
+    double height;      /* of the light above the ground, m */
+    double bare_height; /* the number written for it without a unit, plausible or not; 0: none */
+    double direction;   /* degrees clockwise from north the head faces, NaN: none */
+    int count;          /* heads on the pole; 0 = unknown */
     double lumens, watts, kelvin;
     float rgb[3]; /* colour tag; negative if none */
     enum { GEO_LAMP_STREET, GEO_LAMP_LANTERN, GEO_LAMP_FLOOD } type;

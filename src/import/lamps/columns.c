@@ -87,7 +87,7 @@ static const lamp_column columns[] = {
     { "lichtpunkthoehe", F(HEIGHT), 0, 2 },
     { "hauteurfeu", F(HEIGHT), 0, 2 }, { "hauteurdefeu", F(HEIGHT), 0, 2 }, { "hauteurlumiere", F(HEIGHT), 0, 2 },
     { "lyspunkthojde", F(HEIGHT), 0, 2 }, { "leuchtenhohe", F(HEIGHT), 0, 2 }, { "leuchtenhoehe", F(HEIGHT), 0, 2 },
-    { "height", F(HEIGHT), 1, 0 }, { "heightm", F(HEIGHT), 1, 0 }, { "poleheight", F(HEIGHT), 1, 1 },
+    { "height", F(HEIGHT), 1, 0 }, { "poleheight", F(HEIGHT), 1, 1 },
     { "poleht", F(HEIGHT), 1, 1 }, { "polelength", F(HEIGHT), 1, 1 }, { "columnheight", F(HEIGHT), 1, 1 },
     { "mastlengte", F(HEIGHT), 1, 1 }, { "masthoogte", F(HEIGHT), 1, 1 }, { "masthohe", F(HEIGHT), 1, 1 },
     { "masthoehe", F(HEIGHT), 1, 1 }, { "mastlange", F(HEIGHT), 1, 1 }, { "mastheight", F(HEIGHT), 1, 1 },

@@ -84,7 +84,8 @@ static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const ch
         memcpy(stem, folded, length);
         stem[length] = 0;
         m->field = find(stem, m);
-        if (m->field && lamp_field_unit(m->field) == (lamp_unit)kind)
+        m->unit_named = m->field && lamp_field_unit(m->field) == (lamp_unit)kind;
+        if (m->unit_named)
             return m->field;
     }
     return LAMP_FIELD_NONE;
@@ -127,8 +128,7 @@ bool lamp_same_key(const char *a, const char *b) {
 
 typedef struct mapping {
     lamp_meaning meaning;
-    bool unit_named; /* by the field: "height_ft" */
-    char *column;    /* as the user wrote it */
+    char *column; /* as the user wrote it */
 } mapping;
 
 typedef NOC_ARRAY(mapping) mappings;
@@ -146,7 +146,6 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
     *equals = 0;
     mapping map = { .column = equals + 1 };
     lamp_fold(item, false, field, sizeof(field));
-    map.unit_named = !find_field(field, &map.meaning);
     if (!find_with_unit(field, find_field, &map.meaning))
         return noc_error(log, NOC_ERR_ARGUMENT,
                          "lamp-columns: there is no field \"%.40s\"; the fields are " FIELD_NAMES, item);
@@ -252,7 +251,7 @@ static bool heading_unit(const char *name, lamp_field field, double *scale, cons
         return true;
     *scale = m.scale;
     *unit = m.unit;
-    return m.field == field && m.scale != 1; /* metres, watts, ... are what it would be without a unit */
+    return m.field == field && m.unit_named;
 }
 
 /* *ignored: as in key. */
@@ -270,12 +269,13 @@ static lamp_meaning find_meaning(const lamp_keys *keys, const char *name, const 
     const char *unit;
     if (!heading_unit(name, m.field, &scale, &unit))
         return m;
-    if (map->unit_named) {
+    if (m.unit_named) {
         *ignored = scale != m.scale ? unit : NULL;
         return m;
     }
     m.scale = scale;
     m.unit = unit;
+    m.unit_named = true;
     return m;
 }
 

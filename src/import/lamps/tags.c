@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
 /* Tags that make a lamp, as OSM and its exports write them. */
 static const struct {
     const char *key, *value;
@@ -185,6 +187,17 @@ static bool read_quantity(reading *r, const char *text, lamp_unit unit, double l
     return true;
 }
 
+/* Of a number without a unit, who loads it asks which one it may be. */
+static bool read_height(reading *r, const lamp_meaning *c, const char *text) {
+    double value;
+    int times;
+    bool unit = c->unit_named || strpbrk(text, "'\"") || *(text + strcspn(text, LETTERS));
+    if (!unit && lamp_quantity(text, LAMP_METRES, 1, r->decimal, &value, &times))
+        r->lamp->bare_height = value;
+    return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
+                         &r->lamp->height);
+}
+
 static bool read_count(reading *r, const char *text) {
     double value;
     int times;
@@ -256,9 +269,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     double x;
     r->scale = c->scale;
     switch (c->field) {
-    case LAMP_FIELD_HEIGHT:
-        return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES,
-                             "height of a lamp not understood or implausible", &lamp->height);
+    case LAMP_FIELD_HEIGHT: return read_height(r, c, text);
     case LAMP_FIELD_DIRECTION:
         return lamp_direction(text, &lamp->direction) || misread(r, "direction of a lamp not understood");
     case LAMP_FIELD_COUNT: return read_count(r, text);

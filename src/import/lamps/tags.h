@@ -57,6 +57,7 @@ typedef struct lamp_meaning {
     int strength;     /* towards lamp_columns_tell, which asks for 2 */
     double scale;     /* of values without a unit: .3048 where the key says feet */
     const char *unit; /* "ft", "W", ...; "" where the field has none */
+    bool unit_named;  /* by the key or by the user: the unit is no default */
     lamp_role role;
     bool makes;     /* a key of tags that make a lamp (highway, man_made, ...) */
     unsigned after; /* such a key begins there, after a lifecycle prefix ("disused:"); 0: none */

@@ -68,6 +68,7 @@ static const struct unit {
     { LAMP_METRES, "meters", 1, "m" },
     { LAMP_METRES, "metre", 1, "m" },
     { LAMP_METRES, "metres", 1, "m" },
+    { LAMP_METRES, "dm", .1, "dm" },
     { LAMP_METRES, "cm", .01, "cm" },
     { LAMP_METRES, "mm", .001, "mm" },
     { LAMP_METRES, "ft", .3048, "ft" },

@@ -526,6 +526,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         geo_issues_destroy(im.inputs[i].issues);
         geo_issues_destroy(im.inputs[i].found);
         place_forget(&im.inputs[i]);
+        units_forget(&im.inputs[i]);
     }
     if (!status && params->strict)
         status = report_strict(im.report, params, scene->log);

@@ -39,6 +39,12 @@ typedef struct expanded {
 noc_status expand_inputs(const char *const *paths, size_t count, noc_log *log, expanded *out);
 void expanded_free(expanded *e);
 
+/* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
+typedef struct given_place {
+    double xy[2];
+    source_crs *source;
+} given_place;
+
 typedef struct input {
     const char *path;
     const char *folder; /* the input that is a folder, in which it was found; NULL: it is named */
@@ -51,21 +57,18 @@ typedef struct input {
     noc_report_file file; /* texts in the report's arena */
     bool remote;          /* read by the helper */
     bool started, repeated;
-    size_t lamps_lost; /* that the reader or the sink found to have no place */
-    bool named_lamps;  /* by noc_import_params.lamps */
-    bool named_tracks; /* by noc_import_params.tracks */
-    int strange_crs;   /* that were not understood and not replaced by --crs */
+    size_t lamps_lost;                /* that the reader or the sink found to have no place */
+    NOC_ARRAY(float) lamp_heights;    /* of those that name no unit, as they are written */
+    NOC_ARRAY(float) lantern_heights; /* of these, of lanterns */
+    given_place lamp_given;           /* of the first of them */
+    bool named_lamps;                 /* by noc_import_params.lamps */
+    bool named_tracks;                /* by noc_import_params.tracks */
+    int strange_crs;                  /* that were not understood and not replaced by --crs */
     NOC_ARRAY(source_crs *) sources;
     /* the scene's side: what is found as parts are taken, and the object that is being taken */
     geo_issues *found;
     bool object_begun, object_decided, object_repeated;
 } input;
-
-/* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
-typedef struct given_place {
-    double xy[2];
-    source_crs *source;
-} given_place;
 
 typedef struct pending_lamp {
     geo_lamp lamp; /* local metres; id in importer.names */
@@ -444,8 +447,11 @@ void road_lamps_raise(const importer *im, pending_lamp *p);
 noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track);
 noc_status traffic_add(importer *im); /* cars along them */
 
-/* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres. */
+/* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres, or where lamps hang
+ * higher than they do in their part of the world. The latter are counted as guessed at, too. */
 void units_check(importer *im);
+bool units_see_lamp(input *in, const pending_lamp *p) NOC_MUST_USE; /* false: memory was refused */
+void units_forget(input *in);
 
 /* box.c */
 noc_status box_read(const noc_import_params *params, noc_log *log, load_box *box);

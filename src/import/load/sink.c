@@ -212,6 +212,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     memcpy(p.lamp.xyz, points[0], sizeof(points[0]));
     memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
     count_lamp(&r->in->file, lamp);
+    if (!units_see_lamp(r->in, &p))
+        return noc_no_memory(r->log, r->in->path);
     if (r->im->inspect) {
         pthread_mutex_lock(&r->im->lock);
         luminaires_see(r->im, r->in, &p.lamp);
