@@ -404,6 +404,17 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     return add_light(b, lit, axis, street);
 }
 
+/* Which way a head looks: its own, where the lamp tells it of each; else they are spread evenly. */
+static void head_facing(const builder *b, int head, double *dx, double *dy) {
+    const geo_lamp *lamp = b->lamp;
+    const double *facing = b->placing->facing;
+    double a = 2 * M_PI * head / b->fitting->heads;
+    if (lamp->heading_count && !b->placing->on_wall)
+        a = ((double)lamp->heading[0] - (double)lamp->heading[head % lamp->heading_count]) * M_PI / 180;
+    *dx = cos(a) * facing[0] - sin(a) * facing[1];
+    *dy = sin(a) * facing[0] + cos(a) * facing[1];
+}
+
 static int add_heads(builder *b) {
     const fitting *f = b->fitting;
     const placing *p = b->placing;
@@ -418,8 +429,8 @@ static int add_heads(builder *b) {
     }
     int lights = 0;
     for (int i = 0; i < f->heads; i++) {
-        double a = 2 * M_PI * i / f->heads, c = cos(a), s = sin(a);
-        double dx = c * p->facing[0] - s * p->facing[1], dy = s * p->facing[0] + c * p->facing[1];
+        double dx, dy;
+        head_facing(b, i, &dx, &dy);
         lights += add_head(b, dx, dy, has_root ? root : NULL);
     }
     return lights;

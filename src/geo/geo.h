@@ -98,6 +98,7 @@ typedef struct geo_appearance {
 } geo_appearance;
 
 #define GEO_MAX_HEADS 24 /* on one pole */
+#define GEO_HEADINGS 8   /* that are told of one pole's heads */
 #define GEO_BODY_HEADS 4 /* of a lamp that is modelled */
 
 enum { GEO_CONDITIONS = 256 }; /* of rules and groups, on tags */
@@ -129,7 +130,10 @@ typedef struct geo_lamp {
     double height;      /* of the light above the ground, m */
     double bare_height; /* the number written for it without a unit, plausible or not; 0: none */
     double direction;   /* degrees clockwise from north the head faces, NaN: none */
-    int count;          /* heads on the pole; 0 = unknown */
+    /* that its heads face where it tells more than one, degrees like the former; heading_count 0: it does not */
+    float heading[GEO_HEADINGS];
+    int heading_count;
+    int count; /* heads on the pole; 0 = unknown */
     double lumens, watts, kelvin;
     float rgb[3]; /* colour tag; negative if none */
     enum { GEO_LAMP_STREET, GEO_LAMP_LANTERN, GEO_LAMP_FLOOD } type;

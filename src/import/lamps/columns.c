@@ -152,7 +152,8 @@ static const lamp_column columns[] = {
     { "lampcolor", F(COLOUR), 0, 2 }, { "lichtfarbe", F(COLOUR), 0, 2 }, { "lichtkleur", F(COLOUR), 0, 2 },
     { "couleurlumiere", F(COLOUR), 0, 2 }, { "colour", F(COLOUR), 9, 0 }, { "color", F(COLOUR), 9, 0 },
     /* light source and fixture */
-    { "lightmethod", F(TYPE), 0, 2 }, { "lamptype", F(TYPE), 0, 2 }, { "lighttype", F(TYPE), 0, 2 },
+    { "lightmethod", F(TYPE), 0, 2 }, { "lightlamptype", F(TYPE), 0, 2 }, { "lightlamp", F(TYPE), 0, 2 },
+    { "lamptype", F(TYPE), 0, 2 }, { "lighttype", F(TYPE), 0, 2 },
     { "lightsource", F(TYPE), 1, 1 }, { "lightsourcetype", F(TYPE), 0, 2 }, { "bulbtype", F(TYPE), 0, 2 },
     { "lampentyp", F(TYPE), 0, 2 }, { "lampenart", F(TYPE), 0, 2 }, { "leuchtmittel", F(TYPE), 0, 2 },
     { "leuchtmitteltyp", F(TYPE), 0, 2 }, { "lampsoort", F(TYPE), 0, 2 }, { "soortlamp", F(TYPE), 0, 2 },

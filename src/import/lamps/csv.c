@@ -137,7 +137,7 @@ typedef struct columns {
     size_t count;
     int lon, lat, x, y, wkt, lat_lon, z; /* -1: none */
     double z_scale;
-    bool tags, inventory;
+    bool tags, inventory, asked;
 } columns;
 
 static int find_column(const columns *cols, lamp_field wanted) {
@@ -168,7 +168,9 @@ static void understand(columns *cols) {
     cols->z_scale = cols->z >= 0 ? lamp_keys_meaning(cols->keys, cols->names[cols->z]).scale : 1;
     for (size_t i = 0; i < cols->count; i++)
         cols->tags |= lamp_key_tells(cols->names[i]);
-    cols->inventory = !cols->tags && lamp_columns_tell(cols->keys, (const char *const *)cols->names, cols->count);
+    const char *const *names = (const char *const *)cols->names;
+    cols->inventory = !cols->tags && lamp_columns_tell(cols->keys, names, cols->count);
+    cols->asked = !cols->tags && !cols->inventory && lamp_columns_ask(cols->keys, names, cols->count);
 }
 
 static void free_columns(columns *cols) {
@@ -477,7 +479,8 @@ static noc_status read_tracks(csv *c, columns *cols, lamp_writer *w, const noc_i
 /* What tells that the rows are lamps: the user, tags, columns, values, or nothing. */
 static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
     noc_status status = NOC_OK;
-    w->inventory = w->sink->named_lamps || cols->inventory;
+    w->asked = cols->asked && !w->sink->named_lamps;
+    w->inventory = w->sink->named_lamps || cols->inventory || w->asked;
     if (!w->inventory && !cols->tags) {
         status = read_kinds(c, cols, &w->kinds);
         w->inventory = w->kinds.any;

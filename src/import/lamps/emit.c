@@ -5,7 +5,7 @@
 
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) {
     *w = (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
-    return w->keys ? NOC_OK : noc_no_memory(sink->log, place);
+    return w->keys && lamp_keys_count_unread(w->keys) ? NOC_OK : noc_no_memory(sink->log, place);
 }
 
 void lamp_writer_free(lamp_writer *w) {
@@ -44,6 +44,8 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
     w->features++;
     double x = xyz[0], y = xyz[1], z = xyz[2];
     lamp_verdict verdict = w->strange ? LAMP_NONE : lamp_verdict_of(w->keys, tags, count, w->inventory);
+    if (verdict == LAMP_ACTIVE && w->asked && !lamp_is_told(w->keys, tags, count))
+        verdict = LAMP_ABSENT;
     w->points += verdict != LAMP_NONE || w->strange;
     w->strange_points += w->strange;
     note(w, tags, count, verdict != LAMP_NONE);

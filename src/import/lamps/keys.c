@@ -205,8 +205,17 @@ typedef struct key {
     bool noted; /* belongs into the table of columns; the others were only asked for */
 } key;
 
+/* Descriptions come again and again: what was read of some of them. */
+enum { MODELS = 256, MODEL_SIZE = 48 };
+typedef struct known_model {
+    char text[MODEL_SIZE];
+    lamp_model model;
+} known_model;
+
 struct lamp_keys {
     mappings maps;
+    known_model *models; /* MODELS of them; NULL: none was asked for */
+    lamp_unread *unread; /* NULL: not counted */
     noc_arena arena;
     noc_map index;
     NOC_ARRAY(key) keys;
@@ -237,7 +246,38 @@ void lamp_keys_destroy(lamp_keys *keys) {
     map_free(&keys->index);
     arena_free(&keys->arena);
     lamp_conditions_destroy(keys->conditions);
+    lamp_unread_destroy(keys->unread);
+    free(keys->models);
     free(keys);
+}
+
+bool lamp_keys_count_unread(lamp_keys *keys) {
+    keys->unread = lamp_unread_create();
+    return keys->unread != NULL;
+}
+
+void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const char *id, geo_issues *issues) {
+    if (!issues)
+        return;
+    if (!keys || !keys->unread)
+        geo_issue(issues, GEO_GUESSED, reason, id);
+    else if (!lamp_unread_add(keys->unread, reason, text, id))
+        keys->arena.refused = true;
+}
+
+lamp_model lamp_keys_model(lamp_keys *keys, const char *text, bool watts_column) {
+    char decimal = lamp_keys_decimal(keys);
+    size_t n = strnlen(text, MODEL_SIZE);
+    if (keys && !watts_column && n < MODEL_SIZE && !keys->models)
+        keys->models = noc_calloc(MODELS, sizeof(*keys->models));
+    if (!keys || !keys->models || watts_column || !n || n == MODEL_SIZE)
+        return lamp_model_of(text, watts_column, decimal);
+    known_model *k = &keys->models[noc_hash_text(text) % MODELS];
+    if (strcmp(k->text, text)) {
+        memcpy(k->text, text, n + 1);
+        k->model = lamp_model_of(text, false, decimal);
+    }
+    return k->model;
 }
 
 /* The unit that a heading names for a field it is mapped to: where the words know it as that field, theirs; else its
@@ -415,6 +455,8 @@ static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place
 
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) {
     warn_of_units(keys, sink->log, place);
+    if (keys->unread && sink->issues)
+        lamp_unread_tell(keys->unread, sink->issues);
     if (!sink->columns)
         return NOC_OK;
     geo_column *columns = noc_calloc(keys->keys.len + 1, sizeof(*columns));
@@ -427,7 +469,7 @@ noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, 
         const key *k = &keys->keys.data[i];
         if (!k->noted)
             continue;
-        bool kind = k->tells || (!k->meaning.field && lamp_key_tells(k->name));
+        bool kind = k->tells || (!k->meaning.field && (lamp_key_tells(k->name) || k->meaning.asks == LAMP_ASKS_ALONE));
         columns[n++] = (geo_column){ .name = k->name,
                                      .field = kind ? "kind" : field_name(k->meaning.field),
                                      .unit = k->meaning.unit,

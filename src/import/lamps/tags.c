@@ -5,155 +5,14 @@
 
 #define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
-/* Tags that make a lamp, as OSM and its exports write them. */
-static const struct {
-    const char *key, *value;
-} lamp_makers[] = {
-    { "highway", "street_lamp" },    { "highway", "street_light" },    { "highway", "streetlamp" },
-    { "man_made", "street_lamp" },   { "man_made", "streetlamp" },     { "man_made", "lamp" },
-    { "man_made", "light_pole" },    { "man_made", "floodlight" },     { "amenity", "street_lamp" },
-    { "light_source", "lantern" },   { "light_source", "floodlight" }, { "light_source", "street_lamp" },
-    { "light_source", "spotlight" }, { "light_source", "bollard" },    { "light_source", "electric_lamp" },
-    { "tower:type", "lighting" },    { "street_lamp", "yes" },
-};
-
-/* "a;b" holds b. */
-static bool list_holds(const char *list, const char *item) {
-    size_t n = strlen(item);
-    for (const char *p = list; *p; p++) {
-        while (*p == ' ')
-            p++;
-        size_t m = strcspn(p, ";");
-        size_t len = m;
-        while (len && p[len - 1] == ' ')
-            len--;
-        if (len == n && !memcmp(p, item, n))
-            return true;
-        p += m;
-        if (!*p)
-            break;
-    }
-    return false;
-}
-
-static bool makes_lamp(const char *key, const char *value) {
-    for (size_t i = 0; i < NOC_COUNT(lamp_makers); i++)
-        if (!strcmp(key, lamp_makers[i].key) && list_holds(value, lamp_makers[i].value))
-            return true;
-    return false;
-}
-
-bool lamp_key_tells(const char *key) {
-    for (size_t i = 0; i < NOC_COUNT(lamp_makers); i++)
-        if (!strcmp(key, lamp_makers[i].key))
-            return true;
-    return false;
-}
-
-bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count) {
-    int strength[LAMP_FIELD_TOTAL] = { 0 }, sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        lamp_meaning m = lamp_keys_meaning(keys, names[i]);
-        strength[m.field] = NOC_MAX(strength[m.field], m.strength);
-    }
-    for (int f = LAMP_FIELD_NONE + 1; f < LAMP_FIELD_TOTAL; f++)
-        sum += strength[f];
-    return sum >= 2;
-}
-
-/* The part after a lifecycle prefix ("disused:highway" -> "highway"), NULL if there is none. */
-static const char *after_lifecycle(const char *key) {
-    static const char *const prefixes[] = { "disused:",    "abandoned:",    "removed:", "razed:",
-                                            "demolished:", "destroyed:",    "was:",     "proposed:",
-                                            "planned:",    "construction:", "historic:" };
-    for (size_t i = 0; i < NOC_COUNT(prefixes); i++)
-        if (!strncmp(key, prefixes[i], strlen(prefixes[i])))
-            return key + strlen(prefixes[i]);
-    return NULL;
-}
-
-static bool is_no(const char *value) { return noc_ieq(value, "no") || noc_ieq(value, "false") || !strcmp(value, "0"); }
-
-static void makers_of(const char *key, lamp_meaning *m) {
-    const char *rest = after_lifecycle(key);
-    m->makes = lamp_key_tells(key);
-    m->after = rest && lamp_key_tells(rest) ? (unsigned)(rest - key) : 0;
-}
-
-void lamp_roles_of(const char *key, lamp_meaning *m) {
-    static const struct {
-        const char *folded;
-        lamp_role role;
-    } roles[] = {
-        { "disused", LAMP_ROLE_GONE },           { "abandoned", LAMP_ROLE_GONE },
-        { "removed", LAMP_ROLE_GONE },           { "demolished", LAMP_ROLE_GONE },
-        { "indoor", LAMP_ROLE_INDOORS },         { "tunnel", LAMP_ROLE_INDOORS },
-        { "location", LAMP_ROLE_LOCATION },      { "whyinactive", LAMP_ROLE_WHY_NOT },
-        { "inactivereason", LAMP_ROLE_WHY_NOT }, { "inoperation", LAMP_ROLE_WORKS },
-        { "active", LAMP_ROLE_WORKS }, /* elsewhere a date since when it works */
-    };
-    char folded[128];
-    makers_of(key, m);
-    lamp_fold(key, false, folded, sizeof(folded));
-    m->role = LAMP_ROLE_NONE;
-    for (size_t i = 0; i < NOC_COUNT(roles); i++) {
-        bool tag = roles[i].role <= LAMP_ROLE_LOCATION; /* of OpenStreetMap: as it is written */
-        if (!strcmp(tag ? key : folded, roles[i].folded))
-            m->role = roles[i].role;
-    }
-}
-
-/* What a tag of a lamp says about whether it shines on a street. */
-static lamp_verdict tag_verdict(const lamp_meaning *m, const char *v) {
-    char folded[128];
-    if (m->field == LAMP_FIELD_STATUS && m->role != LAMP_ROLE_GONE) {
-        lamp_fold(v, true, folded, sizeof(folded));
-        return lamp_inactive_word(folded) ? LAMP_INACTIVE : LAMP_ACTIVE;
-    }
-    switch (m->role) {
-    case LAMP_ROLE_GONE: return is_no(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
-    case LAMP_ROLE_INDOORS: return is_no(v) ? LAMP_ACTIVE : LAMP_INDOORS;
-    case LAMP_ROLE_LOCATION: return !strcmp(v, "underground") || !strcmp(v, "indoor") ? LAMP_INDOORS : LAMP_ACTIVE;
-    case LAMP_ROLE_WHY_NOT: return lamp_blank(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
-    case LAMP_ROLE_WORKS: return is_no(v) ? LAMP_INACTIVE : LAMP_ACTIVE;
-    case LAMP_ROLE_NONE: break;
-    }
-    return LAMP_ACTIVE;
-}
-
-lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count, bool inventory) {
-    lamp_verdict verdict = inventory ? LAMP_ACTIVE : LAMP_NONE;
-    for (size_t i = 0; i < count && verdict != LAMP_ACTIVE; i++) {
-        if (!tags[i].value || !*tags[i].value)
-            continue;
-        lamp_meaning m;
-        if (tags[i].known && keys)
-            m = lamp_tag_meaning(keys, &tags[i]);
-        else
-            makers_of(tags[i].key, &m);
-        if (m.makes && makes_lamp(tags[i].key, tags[i].value))
-            verdict = LAMP_ACTIVE;
-        if (m.after && makes_lamp(tags[i].key + m.after, tags[i].value))
-            verdict = LAMP_INACTIVE;
-    }
-    for (size_t i = 0; i < count && verdict == LAMP_ACTIVE; i++)
-        if (tags[i].value && *tags[i].value) {
-            lamp_meaning m = lamp_tag_meaning(keys, &tags[i]);
-            verdict = tag_verdict(&m, tags[i].value);
-        }
-    return verdict;
-}
-
-bool lamp_accept(lamp_verdict verdict, const char *id, geo_issues *issues) {
-    if (issues && verdict == LAMP_INACTIVE)
-        geo_issue(issues, GEO_SPARED, "lamp not in use (removed, disused or planned)", id);
-    if (issues && verdict == LAMP_INDOORS)
-        geo_issue(issues, GEO_SPARED, "lamp indoors or underground", id);
-    return verdict == LAMP_ACTIVE;
-}
+typedef struct said {
+    lamp_meaning meaning;
+    const char *value;
+} said;
 
 typedef struct reading {
     geo_lamp *lamp;
+    lamp_keys *keys; /* NULL: none */
     geo_issues *issues;
     bool type_known;
     int times;    /* the factor of "2x70 W" */
@@ -167,13 +26,19 @@ static bool misread(const reading *r, const char *reason) {
     return false;
 }
 
+/* The same of a text, whose values are counted. */
+static bool unread(const reading *r, const char *reason, const char *text) {
+    lamp_keys_unread(r->keys, reason, text, r->lamp->id, r->issues);
+    return false;
+}
+
 /* A quantity in its plausible range; 0 stands for "not known" in many tables. True if *out was set. */
 static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason,
                           double *out) {
     double value;
     int times;
     if (!lamp_quantity(text, unit, r->scale, r->decimal, &value, &times))
-        return misread(r, reason);
+        return unread(r, reason, text);
     if (value == 0)
         return false;
     if (value < lo || value > hi)
@@ -232,7 +97,7 @@ static bool read_colour(reading *r, const char *text, bool of_the_light) {
         return r->lamp->kelvin > 0;
     lamp_fold(text, true, folded, sizeof(folded));
     if (!lamp_hex_colour(text, rgb) && !lamp_colour_word(folded, &kelvin, rgb))
-        return misread(r, "colour of a lamp not understood");
+        return unread(r, "colour of a lamp not understood", text);
     if (kelvin > 0)
         r->lamp->kelvin = kelvin;
     else if (rgb[0] + rgb[1] + rgb[2] > 0)
@@ -254,6 +119,84 @@ static bool read_type(reading *r, const char *text, bool of_the_lamp) {
     return r->lamp->source != GEO_SOURCE_UNKNOWN && r->type_known;
 }
 
+/* A list ("45;225") has as many heads, each with its own. */
+static bool read_directions(reading *r, const char *text) {
+    geo_lamp *lamp = r->lamp;
+    int count = lamp_directions(text, r->decimal, lamp->heading);
+    lamp->heading_count = count > 1 ? count : 0;
+    if (count < 2)
+        return lamp_direction(text, &lamp->direction) || unread(r, "direction of a lamp not understood", text);
+    lamp->direction = (double)lamp->heading[0];
+    return true;
+}
+
+/* "LED, 38 WATT" says more than watts, and read_models reads it. */
+static bool read_watts(reading *r, const char *text) {
+    double watts;
+    int times;
+    lamp_model m = { .watts = NAN };
+    if (!lamp_quantity(text, LAMP_WATTS, r->scale, r->decimal, &watts, &times))
+        m = lamp_keys_model(r->keys, text, true);
+    return !isfinite(m.watts) && read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS,
+                                               "wattage not understood or implausible", &r->lamp->watts);
+}
+
+/* What a description adds to what is known. Watts of a column may be those of all of its heads. */
+static void take_model(reading *r, const lamp_model *m) {
+    geo_lamp *lamp = r->lamp;
+    bool watts = isfinite(lamp->watts), same = isfinite(m->watts) && fabs(lamp->watts - m->watts) <= .1 * m->watts;
+    if (lamp->source == GEO_SOURCE_UNKNOWN)
+        lamp->source = m->source;
+    if (m->heads > 1 && r->times <= 1 && (!watts || !isfinite(m->watts) || same))
+        r->times = m->heads;
+    lamp->watts = watts ? lamp->watts : m->watts;
+    lamp->lumens = isfinite(lamp->lumens) ? lamp->lumens : m->lumens;
+    lamp->kelvin = isfinite(lamp->kelvin) ? lamp->kelvin : m->kelvin;
+}
+
+static bool lacks(const geo_lamp *lamp) { return lamp->source == GEO_SOURCE_UNKNOWN || !isfinite(lamp->watts); }
+
+/* Is a text of a column of sources and fixtures one that says something? */
+static bool says_something(const char *text, const lamp_model *m) {
+    static const char *const plain[] = {
+        "electric", "street lamp", "street light", "streetlight", "standard", "other"
+    };
+    char folded[128];
+    lamp_fold(text, true, folded, sizeof(folded));
+    lamp_text t = lamp_text_of(folded);
+    bool does = m->source != GEO_SOURCE_UNKNOWN || isfinite(m->watts) || m->heads || lamp_type_word(folded) >= 0 ||
+                lamp_mount_word(folded) >= 0;
+    for (size_t i = 0; i < NOC_COUNT(plain); i++)
+        does = does || lamp_has_word(&t, plain[i]);
+    return does;
+}
+
+/* Descriptions: in columns of lamps first, by rank, then wherever one stands alone. */
+static void read_models(reading *r, const said *all, size_t count, int ranks, const lamp_tag *tags, size_t tag_count) {
+    const char *strange = NULL;
+    for (int rank = -1; rank < ranks; rank++)
+        for (size_t i = 0; i < count; i++) {
+            const lamp_meaning *m = &all[i].meaning;
+            bool watts = m->field == LAMP_FIELD_WATTS;
+            if (m->rank != rank || (!watts && m->field != LAMP_FIELD_TYPE))
+                continue;
+            const lamp_model model = lamp_keys_model(r->keys, all[i].value, watts && rank < 2);
+            take_model(r, &model);
+            if (!watts && rank < 4 && !strange && !says_something(all[i].value, &model))
+                strange = all[i].value;
+        }
+    for (size_t i = 0; i < tag_count && lacks(r->lamp); i++) {
+        const char *text = tags[i].value;
+        if (!text || !*(text + strcspn(text, LETTERS)) || !lamp_tag_meaning(r->keys, &tags[i]).free_text)
+            continue;
+        const lamp_model model = lamp_keys_model(r->keys, text, false);
+        if (lamp_model_stands_alone(&model))
+            take_model(r, &model);
+    }
+    if (strange && r->lamp->source == GEO_SOURCE_UNKNOWN)
+        unread(r, "source of a lamp not understood", strange);
+}
+
 static bool read_mount(reading *r, const char *text) {
     char folded[128];
     lamp_fold(text, true, folded, sizeof(folded));
@@ -270,8 +213,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     r->scale = c->scale;
     switch (c->field) {
     case LAMP_FIELD_HEIGHT: return read_height(r, c, text);
-    case LAMP_FIELD_DIRECTION:
-        return lamp_direction(text, &lamp->direction) || misread(r, "direction of a lamp not understood");
+    case LAMP_FIELD_DIRECTION: return read_directions(r, text);
     case LAMP_FIELD_COUNT: return read_count(r, text);
     case LAMP_FIELD_LUMENS:
         return read_quantity(r, text, LAMP_LUMENS, 5, LAMP_MOST_LUMENS, "luminous flux not understood or implausible",
@@ -279,8 +221,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     case LAMP_FIELD_WATTS:
         if (c->rank == 2 && !(text[0] >= '0' && text[0] <= '9')) /* power=pole and the like */
             return false;
-        return read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, "wattage not understood or implausible",
-                             &lamp->watts);
+        return read_watts(r, text);
     case LAMP_FIELD_KELVIN:
         return read_kelvin(r, text) || misread(r, "colour temperature not understood or implausible");
     case LAMP_FIELD_COLOUR: return read_colour(r, text, c->rank <= 0);
@@ -306,13 +247,11 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                         .rgb = { -1, -1, -1 },
                         .id = lamp->id ? lamp->id : "",
                         .ref = "" };
-    reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1, .decimal = lamp_keys_decimal(keys) };
-    struct said {
-        lamp_meaning meaning;
-        const char *value;
-    } few[32];
-    struct said *said = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*said)) : few;
-    if (!said)
+    reading r = {
+        .lamp = lamp, .keys = keys, .issues = issues, .times = 1, .scale = 1, .decimal = lamp_keys_decimal(keys)
+    };
+    said few[32], *all = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*all)) : few;
+    if (!all)
         return false;
     size_t n = 0;
     int ranks = 0;
@@ -320,7 +259,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
         lamp_meaning m = lamp_tag_meaning(keys, &tags[i]);
         if (m.field == LAMP_FIELD_NONE || lamp_blank(tags[i].value))
             continue;
-        said[n++] = (struct said){ m, tags[i].value };
+        all[n++] = (said){ m, tags[i].value };
         ranks = NOC_MAX(ranks, m.rank + 1);
     }
     bool known[LAMP_FIELD_TOTAL] = { false };
@@ -328,21 +267,22 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
     for (int pass = 0; pass < 2; pass++)
         for (int rank = -1; rank < ranks; rank++)
             for (size_t i = 0; i < n; i++) {
-                const lamp_meaning *m = &said[i].meaning;
+                const lamp_meaning *m = &all[i].meaning;
                 if (m->rank != rank || known[m->field] || (m->field == LAMP_FIELD_ID) != (pass == 0))
                     continue;
-                known[m->field] = read_field(&r, m, said[i].value);
+                known[m->field] = read_field(&r, m, all[i].value);
             }
     for (int rank = -1; rank < ranks && !*lamp->ref; rank++)
         for (size_t i = 0; i < n && !*lamp->ref; i++)
-            if (said[i].meaning.field == LAMP_FIELD_ID && said[i].meaning.rank == rank &&
-                strcmp(said[i].value, lamp->id) != 0)
-                lamp->ref = said[i].value;
-    if (said != few)
-        free(said);
+            if (all[i].meaning.field == LAMP_FIELD_ID && all[i].meaning.rank == rank &&
+                strcmp(all[i].value, lamp->id) != 0)
+                lamp->ref = all[i].value;
+    read_models(&r, all, n, ranks, tags, count);
+    if (all != few)
+        free(all);
     lamp_keys_ask(keys, tags, count, lamp);
-    if (!lamp->count && r.times > 1)
-        lamp->count = r.times;
+    if (!lamp->count)
+        lamp->count = lamp->heading_count ? lamp->heading_count : r.times > 1 ? r.times : 0;
     if (lamp->source == GEO_SOURCE_GAS && !r.type_known)
         lamp->type = GEO_LAMP_LANTERN;
     return true;

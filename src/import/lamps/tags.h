@@ -13,7 +13,7 @@ typedef struct lamp_tag {
     unsigned known;          /* lamp_keys_know of the key, where a reader asked once for many tags; 0: not asked */
 } lamp_tag;
 
-/* ---- what keys mean (keys.c) ---- */
+/* ---- what keys mean (keys.c, verdict.c) ---- */
 
 typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
 
@@ -47,8 +47,17 @@ typedef enum lamp_role {
     LAMP_ROLE_INDOORS,
     LAMP_ROLE_LOCATION,
     LAMP_ROLE_WHY_NOT,
-    LAMP_ROLE_WORKS
+    LAMP_ROLE_WORKS,
+    LAMP_ROLE_WORKS_NOT
 } lamp_role;
+
+/* What a key's yes and no say. */
+typedef enum lamp_asks {
+    LAMP_ASKS_NOT,
+    LAMP_ASKS_WORDS, /* "no" in a column of lamps: there is none (lamp, light) */
+    LAMP_ASKS,       /* is there a lamp? (has_light) */
+    LAMP_ASKS_ALONE  /* the same, and a table's points that are told to have one are lamps (is_streetlight) */
+} lamp_asks;
 
 /* What a key means. */
 typedef struct lamp_meaning {
@@ -59,11 +68,13 @@ typedef struct lamp_meaning {
     const char *unit; /* "ft", "W", ...; "" where the field has none */
     bool unit_named;  /* by the key or by the user: the unit is no default */
     lamp_role role;
+    lamp_asks asks;
     bool makes;     /* a key of tags that make a lamp (highway, man_made, ...) */
+    bool free_text; /* says nothing of lamps by its name, and its values may: lamp_model_stands_alone */
     unsigned after; /* such a key begins there, after a lifecycle prefix ("disused:"); 0: none */
 } lamp_meaning;
 
-/* role, makes and after of a key. */
+/* role, asks, makes and after of a key. */
 void lamp_roles_of(const char *key, lamp_meaning *meaning);
 
 /* In which unit the values of a field are; LAMP_PLAIN: in none. */
@@ -71,6 +82,25 @@ lamp_unit lamp_field_unit(lamp_field field);
 
 /* By the words alone. Field NONE where they do not know it. */
 lamp_meaning lamp_meaning_of(const char *key);
+
+/* ---- free text (model.c) ---- */
+
+/* What a description of a lamp says ("HPS 250W AERO", "2x36W PL-L/830"). */
+typedef struct lamp_model {
+    int source;                   /* geo_lamp.source */
+    double watts, lumens, kelvin; /* of a head; NaN: not said */
+    int heads;                    /* 0: not said */
+    bool unit, clear_unit;        /* the watts name theirs; by a word that means nothing else where it stands */
+    int clear;                    /* how much a name of its source means that: 0 to 2 */
+    bool plain;                   /* it is the name of a source, with watts or without, and nothing else */
+} lamp_model;
+/* watts_column: a number without a unit is watts, wherever it stands. decimal: as in lamp_quantity. */
+lamp_model lamp_model_of(const char *text, bool watts_column, char decimal);
+/* May it be believed in a column whose name says nothing of lamps? Watts with their unit may, and a source that is all
+ * that the text says, or that has its watts behind it. */
+bool lamp_model_stands_alone(const lamp_model *model);
+
+/* ---- keys of a file (keys.c) ---- */
 
 /* The keys of one file: what they mean, by words and by --lamp-columns, and which values they had. */
 typedef struct lamp_keys lamp_keys;
@@ -87,6 +117,12 @@ char lamp_keys_decimal(const lamp_keys *keys); /* keys may be NULL */
 /* Asks what params' rules and groups want to know of the tags of a lamp (geo_lamp.holds, tells_street), and keeps the
  * tags themselves until the next lamp where params ask for them (geo_lamp.tags); keys may be NULL: none. */
 void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp);
+/* Counts values that are not understood one by one, until lamp_keys_report tells of them; false: memory was refused. */
+bool lamp_keys_count_unread(lamp_keys *keys) NOC_MUST_USE;
+/* A value that is not understood; keys may be NULL, and issues. */
+void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const char *id, geo_issues *issues);
+/* lamp_model_of, remembered. keys may be NULL. */
+lamp_model lamp_keys_model(lamp_keys *keys, const char *text, bool watts_column);
 /* Notes a tag's value for the table of columns; blank ones count as none. */
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 /* The values of this key say what is a lamp: its field is "kind". */
@@ -108,6 +144,7 @@ typedef enum lamp_verdict {
     LAMP_ACTIVE,
     LAMP_INACTIVE, /* a lamp that is gone, switched off for good or not built yet */
     LAMP_INDOORS,  /* a lamp in a building, a tunnel or under ground */
+    LAMP_ABSENT,   /* a point that says that it has no lamp: a pole of wires */
 } lamp_verdict;
 
 /* By OSM tags: highway=street_lamp and its kin, with lifecycle prefixes. In an inventory every row is a lamp, and only
@@ -119,6 +156,10 @@ bool lamp_key_tells(const char *key);
 /* Do these columns, together, belong to an inventory of lamps? One column that only lamps have is enough (LampType,
  * lumens), or two that lamps usually have (mast number, mast length, wattage). */
 bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
+/* Does one of them say by yes and no whether a point is a street lamp (IS_STREETLIGHT)? */
+bool lamp_columns_ask(lamp_keys *keys, const char *const *names, size_t count);
+/* Do those columns of this row say yes, or name something other than no? */
+bool lamp_is_told(lamp_keys *keys, const lamp_tag *tags, size_t count);
 
 /* Fills everything but xyz, which is left as it is except for a missing height taken from an elevation column. Values
  * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id and ref point into
@@ -147,6 +188,17 @@ bool lamp_kinds_tell(const lamp_kinds *kinds, const lamp_tag *tags, size_t count
 void lamp_kinds_note(const lamp_kinds *kinds, lamp_keys *keys);                    /* for the table of columns */
 void lamp_kinds_free(lamp_kinds *kinds);
 
+/* ---- values that are not understood (unread.c) ---- */
+
+/* Counts them by value. */
+typedef struct lamp_unread lamp_unread;
+lamp_unread *lamp_unread_create(void); /* NULL: memory was refused */
+void lamp_unread_destroy(lamp_unread *u);
+/* reason must stay. id: of the lamp that has it. false: memory was refused */
+bool lamp_unread_add(lamp_unread *u, const char *reason, const char *text, const char *id) NOC_MUST_USE;
+/* Of each reason the five most frequent values, a line each, and the others in one. */
+void lamp_unread_tell(lamp_unread *u, geo_issues *issues);
+
 /* ---- on their way to the sink (emit.c) ---- */
 
 #define LAMP_WGS84 "=OGC:CRS84" /* with GEO_CRS_TAKEN: of files that name none */
@@ -162,6 +214,7 @@ typedef struct lamp_writer {
     lamp_keys *keys;
     lamp_kinds kinds; /* where any of them tells: only rows that are lamps by it */
     bool inventory;   /* every point is a lamp, unless its status says otherwise */
+    bool asked;       /* of an inventory: only those that a column says to be (lamp_is_told) */
     bool strange;     /* nothing tells what the points are: they are noted and counted */
     size_t points, strange_points;
     geo_features seen;
@@ -229,6 +282,7 @@ int lamp_source_word(const char *folded); /* geo_lamp.source */
 int lamp_type_word(const char *folded);   /* geo_lamp.type */
 int lamp_mount_word(const char *folded);  /* geo_lamp.mount */
 bool lamp_inactive_word(const char *folded);
+bool lamp_absent_word(const char *folded); /* "no light", "pole only" */
 /* Kelvin for words of white and of sodium light, linear Rec.709 for others. */
 bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 
@@ -240,6 +294,10 @@ enum { LAMP_MOST_METRES = 60, LAMP_MOST_LUMENS = 500000, LAMP_MOST_WATTS = 5000 
 /* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the
  * factor of "2x", else 1. decimal: the file's decimal sign, '.' or ','; 0: not known. */
 bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times);
+/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts
+ * thousands. 0: both are decimal signs, but for a comma before three digits in a quantity that runs to thousands.
+ * Returns the position after it, NULL if there is none. */
+const char *lamp_scan_number(const char *s, bool thousands, char decimal, double *out);
 /* The sign in a number that can be nothing but a decimal sign ("8,5", "11.4231"): not before three digits, which may be
  * thousands. 0: there is none. */
 char lamp_decimal_sign(const char *text);
@@ -249,6 +307,8 @@ size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const c
 bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char **name);
 /* Degrees clockwise from north: "135", "135 deg", "NNE", "south-west". */
 bool lamp_direction(const char *text, double *degrees);
+/* A list of them ("45;225", "N/S"): how many there are, GEO_HEADINGS at most; 0: it is not understood. */
+int lamp_directions(const char *text, char decimal, float degrees[GEO_HEADINGS]);
 /* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W". */
 bool lamp_coordinate(const char *text, double *value);
 bool lamp_blank(const char *text); /* NULL, "", "N/A", "-", "null", "none", "unknown" */

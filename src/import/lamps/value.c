@@ -32,10 +32,7 @@ static bool three_digits(const char *s) {
            !isdigit((unsigned char)s[3]);
 }
 
-/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts
- * thousands. 0: both are decimal signs, but for a comma before three digits in a quantity that runs to thousands.
- * Returns the position after it, NULL if there is none. */
-static const char *scan_number(const char *s, bool thousands, char decimal, double *out) {
+const char *lamp_scan_number(const char *s, bool thousands, char decimal, double *out) {
     char text[48], parts = decimal ? ".,"[decimal == '.'] : thousands ? ',' : 0;
     size_t n = 0;
     bool dot = false;
@@ -141,13 +138,13 @@ bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal,
         return false;
     bool thousands = unit == LAMP_WATTS || unit == LAMP_LUMENS || unit == LAMP_KELVIN;
     double x;
-    const char *p = scan_number(skip_blanks(text), thousands, decimal, &x);
+    const char *p = lamp_scan_number(skip_blanks(text), thousands, decimal, &x);
     if (!p)
         return false;
     const char *q = skip_blanks(p);
     if ((*q == 'x' || *q == 'X' || *q == '*') && x >= 1 && x <= 99 && x == floor(x)) {
         double each;
-        const char *r = scan_number(skip_blanks(q + 1), thousands, decimal, &each);
+        const char *r = lamp_scan_number(skip_blanks(q + 1), thousands, decimal, &each);
         if (r) {
             *times = (int)x;
             x = each;
@@ -156,7 +153,7 @@ bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal,
     }
     if (unit == LAMP_METRES && *q == '\'') { /* feet and inches */
         double inches = 0;
-        scan_number(skip_blanks(q + 1), false, decimal, &inches);
+        lamp_scan_number(skip_blanks(q + 1), false, decimal, &inches);
         *value = x * .3048 + inches * .0254;
         return isfinite(*value);
     }
@@ -197,7 +194,7 @@ bool lamp_direction(const char *text, double *degrees) {
     const char *p = skip_blanks(text);
     bool negative = *p == '-';
     double x;
-    p = scan_number(p + negative, false, 0, &x);
+    p = lamp_scan_number(p + negative, false, 0, &x);
     if (!p || x > 360)
         return false;
     /* a range or a list ("90-180", "90;270") names no one direction */
@@ -208,12 +205,39 @@ bool lamp_direction(const char *text, double *degrees) {
     return true;
 }
 
+/* Where one item of a list ends. A comma parts items before a blank, or before three digits where it is no decimal
+ * sign: "45,225". */
+static size_t item_length(const char *p, char decimal) {
+    size_t n = strcspn(p, ";/|&+,");
+    while (p[n] == ',' && !(p[n + 1] == ' ' || (decimal != ',' && three_digits(p + n + 1))))
+        n += 1 + strcspn(p + n + 1, ";/|&+,");
+    return n;
+}
+
+int lamp_directions(const char *text, char decimal, float degrees[GEO_HEADINGS]) {
+    int count = 0;
+    for (const char *p = text; count < GEO_HEADINGS; p++) {
+        char item[32];
+        double one;
+        size_t n = item_length(p, decimal);
+        noc_snprintf(item, sizeof(item), "%.*s", (int)NOC_MIN(n, sizeof(item) - 1), skip_blanks(p));
+        item[NOC_MIN(n - NOC_MIN((size_t)(skip_blanks(p) - p), n), sizeof(item) - 1)] = 0;
+        if (!lamp_direction(item, &one))
+            return 0;
+        degrees[count++] = (float)one;
+        p += n;
+        if (!*p)
+            return count;
+    }
+    return 0;
+}
+
 bool lamp_coordinate(const char *text, double *value) {
     if (!text)
         return false;
     const char *p = skip_blanks(text);
     bool negative = *p == '-';
-    p = scan_number(p + (*p == '-' || *p == '+'), false, 0, value);
+    p = lamp_scan_number(p + (*p == '-' || *p == '+'), false, 0, value);
     if (!p) /* exponents and the like */
         return noc_parse_double(text, value);
     p = skip_blanks(p);

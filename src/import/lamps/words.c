@@ -64,6 +64,10 @@ int lamp_source_word(const char *folded) {
         { "cdm*", GEO_SOURCE_METAL_HALIDE },
         { "cdo*", GEO_SOURCE_METAL_HALIDE },
         { "cpo*", GEO_SOURCE_METAL_HALIDE },
+        { "hci*", GEO_SOURCE_METAL_HALIDE },
+        { "cmh*", GEO_SOURCE_METAL_HALIDE },
+        { "mhn*", GEO_SOURCE_METAL_HALIDE },
+        { "mbi", GEO_SOURCE_METAL_HALIDE },
         { "cosmopolis", GEO_SOURCE_METAL_HALIDE },
         { "halogenmetall*", GEO_SOURCE_METAL_HALIDE },
         { "metallhalogen*", GEO_SOURCE_METAL_HALIDE },
@@ -80,6 +84,7 @@ int lamp_source_word(const char *folded) {
         { "lps*", GEO_SOURCE_SODIUM },
         { "sodium", GEO_SOURCE_SODIUM },
         { "sodio", GEO_SOURCE_SODIUM },
+        { "sod", GEO_SOURCE_SODIUM },
         { "natrium*", GEO_SOURCE_SODIUM },
         { "son", GEO_SOURCE_SODIUM },
         { "sont", GEO_SOURCE_SODIUM },
@@ -97,7 +102,10 @@ int lamp_source_word(const char *folded) {
         { "hst", GEO_SOURCE_SODIUM },
         { "hse", GEO_SOURCE_SODIUM },
         { "lst", GEO_SOURCE_SODIUM },
+        { "ballon fluo*", GEO_SOURCE_MERCURY },
         { "mercury", GEO_SOURCE_MERCURY },
+        { "merc", GEO_SOURCE_MERCURY },
+        { "mbf*", GEO_SOURCE_MERCURY },
         { "mv", GEO_SOURCE_MERCURY },
         { "hme", GEO_SOURCE_MERCURY },
         { "hpl*", GEO_SOURCE_MERCURY },
@@ -212,6 +220,18 @@ int lamp_mount_word(const char *folded) {
     return find_word(folded, words, NOC_COUNT(words));
 }
 
+bool lamp_absent_word(const char *folded) {
+    static const word words[] = {
+        { "no light", 1 },      { "no lights", 1 },      { "no lamp", 1 },           { "no luminaire", 1 },
+        { "no fixture", 1 },    { "no streetlight", 1 }, { "no street light", 1 },   { "no lighting", 1 },
+        { "pole only", 1 },     { "without light", 1 },  { "without lamp", 1 },      { "light removed", 1 },
+        { "ohne leuchte", 1 },  { "keine leuchte", 1 },  { "ohne lampe", 1 },        { "sans luminaire", 1 },
+        { "sans lanterne", 1 }, { "sin luminaria", 1 },  { "senza apparecchio", 1 }, { "zonder armatuur", 1 },
+        { "geen armatuur", 1 }, { "bez svitidla", 1 },   { "bez oprawy", 1 },        { "sem luminaria", 1 },
+    };
+    return find_word(folded, words, NOC_COUNT(words)) > 0;
+}
+
 bool lamp_inactive_word(const char *folded) {
     static const word words[] = {
         { "inactive", 1 },
@@ -230,6 +250,16 @@ bool lamp_inactive_word(const char *folded) {
         { "non operational", 1 },
         { "closed", 1 },
         { "dismantled", 1 },
+        { "deleted", 1 },
+        { "cancelled", 1 },
+        { "canceled", 1 },
+        { "missing", 1 },
+        { "not installed", 1 },
+        { "not built", 1 },
+        { "not working", 1 },
+        { "switched off", 1 },
+        { "deenergized", 1 },
+        { "de energized", 1 },
         { "under construction", 1 },
         { "ausser betrieb", 1 },
         { "ausser dienst", 1 },

@@ -235,7 +235,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
 
 /* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was
  * refused. */
-static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
+static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, lamp_writer *w) {
     OGRFeatureDefnH defn = gdal.OGR_L_GetLayerDefn(layer);
     int count = gdal.OGR_FD_GetFieldCount(defn);
     const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
@@ -246,7 +246,9 @@ static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inven
         names[i] = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
         *tags |= lamp_key_tells(names[i]) || !strcmp(names[i], "other_tags") || !strcmp(names[i], "all_tags");
     }
-    *inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
+    w->inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
+    w->asked = !*tags && !w->inventory && lamp_columns_ask(keys, names, (size_t)count) && !w->sink->named_lamps;
+    w->inventory = w->inventory || w->asked;
     free(names);
     return true;
 }
@@ -343,7 +345,7 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
     bool tags;
     noc_status status = NOC_OK;
     lamp_writer *w = &m->writer;
-    if (!layer_kind(layer, w->keys, &tags, &w->inventory))
+    if (!layer_kind(layer, w->keys, &tags, w))
         return map_no_memory(m);
     w->kinds.any = w->strange = false;
     if (w->sink->named_lamps)

@@ -44,8 +44,9 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
                  is_bool(&lamp.tells_street);
     lamp.fitting = NULL;
     /* or NaN */
-    bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.bare_height < 0 || lamp.lumens > LAMP_MOST_LUMENS ||
-                     lamp.watts > LAMP_MOST_WATTS);
+    bool headings = lamp.heading_count >= 0 && lamp.heading_count <= GEO_HEADINGS;
+    bool numbers = headings && !(lamp.height > LAMP_MOST_METRES || lamp.bare_height < 0 ||
+                                 lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS);
     if (one->bad || !kinds || !numbers || strlen(lamp.tags) >= GEO_LAMP_TAGS ||
         lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||
         !isfinite(lamp.xyz[1]))

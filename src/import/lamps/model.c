@@ -1,0 +1,262 @@
+/* What free text says of a lamp: "HPS 250W AERO", "LED, 38 WATT", "NAV-T 70", "2x36W PL-L/830". Words and numbers in
+ * their order: a number with a unit is one of that, and one beside the name of a source is its watts. */
+#include "import/lamps/tags.h"
+
+#include <ctype.h>
+#include <math.h>
+
+enum { MOST_TOKENS = 32, TOKEN_SIZE = 24 };
+
+typedef struct token {
+    bool number, glued; /* to what is before it */
+    double value;
+    char word[TOKEN_SIZE]; /* folded */
+    lamp_unit unit;        /* of a number that names one; LAMP_PLAIN: none */
+    bool source;           /* a word of a source, or of what belongs to its name */
+} token;
+
+typedef struct tokens {
+    token list[MOST_TOKENS];
+    size_t count;
+    char folded[MOST_TOKENS * TOKEN_SIZE]; /* its words and numbers, with blanks */
+} tokens;
+
+static bool is_letter(const char *p) { return isalpha((unsigned char)*p) || (unsigned char)*p >= 0x80; }
+
+static bool two_digits(const char *p) { return isdigit((unsigned char)p[0]) && isdigit((unsigned char)p[1]); }
+
+/* How many bytes of a word begin at p: letters, and a digit that is alone ("TL5"). */
+static size_t word_length(const char *p) {
+    size_t n = 0;
+    while (is_letter(p + n))
+        n++;
+    bool times = n == 1 && (*p == 'x' || *p == 'X');
+    if (n && !times && isdigit((unsigned char)p[n]) && !two_digits(p + n) && p[n + 1] != '.' && p[n + 1] != ',')
+        n++;
+    return n;
+}
+
+/* The multiplication sign of Unicode, or an asterisk. */
+static size_t times_sign(const char *p) { return *p == '*' ? 1 : !strncmp(p, "\xc3\x97", 2) ? 2 : 0; }
+
+static void split(const char *text, char decimal, tokens *t) {
+    bool glued = false;
+    t->count = 0;
+    for (const char *p = text; *p && t->count < MOST_TOKENS;) {
+        token *one = &t->list[t->count];
+        *one = (token){ .unit = LAMP_PLAIN, .glued = glued };
+        const char *end = NULL;
+        size_t times = times_sign(p), n = times ? 0 : word_length(p);
+        glued = true;
+        if (isdigit((unsigned char)*p) && (end = lamp_scan_number(p, true, decimal, &one->value))) {
+            one->number = true;
+            p = end;
+        } else if (n || times) {
+            char copy[2 * TOKEN_SIZE];
+            noc_snprintf(copy, sizeof(copy), "%.*s", (int)NOC_MIN(n, sizeof(copy) - 1), p);
+            p += n + times;
+            if (times)
+                noc_snprintf(one->word, sizeof(one->word), "x");
+            else if (!lamp_fold(copy, false, one->word, sizeof(one->word)))
+                continue;
+        } else {
+            glued = false;
+            p++;
+            continue;
+        }
+        t->count++;
+    }
+}
+
+static bool is_word(const tokens *t, size_t i, const char *word) {
+    return i < t->count && !t->list[i].number && !strcmp(t->list[i].word, word);
+}
+
+/* Units behind numbers, and numbers of what is no light (volts, hertz, amperes, metres). */
+static void find_units(tokens *t) {
+    static const char *const others[] = { "v", "kv", "volt", "volts", "vac", "hz", "a", "ma", "amp", "amps", "va" };
+    static const lamp_unit wanted[] = { LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN };
+    for (size_t i = 0; i + 1 < t->count; i++) {
+        token *n = &t->list[i];
+        const token *w = &t->list[i + 1];
+        if (!n->number || w->number)
+            continue;
+        for (size_t k = 0; k < NOC_COUNT(others); k++)
+            if (!strcmp(w->word, others[k]))
+                n->unit = LAMP_METRES;
+        for (size_t k = 0; k < NOC_COUNT(wanted) && n->unit == LAMP_PLAIN; k++) {
+            double scale;
+            const char *name;
+            if (!lamp_unit_word(w->word, wanted[k], &scale, &name))
+                continue;
+            n->unit = wanted[k];
+            n->value *= scale;
+        }
+    }
+}
+
+/* Which words name the source: each, with what belongs to a name, is asked by itself. */
+static bool find_sources(tokens *t) {
+    bool any = false;
+    for (size_t i = 0; i < t->count; i++) {
+        token *w = &t->list[i];
+        w->source = !w->number && (lamp_source_word(w->word) >= 0 || !strncmp(w->word, "halide", 6));
+        any = any || w->source;
+    }
+    return any;
+}
+
+/* Words that stand beside a source's and say nothing of their own. */
+static bool goes_with_source(const char *word) {
+    static const char *const words[] = { "high",  "low",   "pressure", "vapor",  "vapour", "vapeur",    "vapore",
+                                         "haute", "basse", "pression", "alta",   "baja",   "bassa",     "presion",
+                                         "lamp",  "lamps", "light",    "lights", "bulb",   "luminaire", "street",
+                                         "de",    "a",     "di",       "hal",    "clear",  "coated",    "retrofit" };
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(word, words[i]))
+            return true;
+    bool metal = !strncmp(word, "metal", 5) || !strncmp(word, "halid", 5);
+    return metal || (strlen(word) <= 2 && strcmp(word, "x") != 0); /* letters of a code: the T of NAV-T */
+}
+
+/* How much a name means a source where a column says nothing of lamps: 2: nothing else, 1: with the watts of a lamp
+ * behind it, 0: only in a column of lamps ("PL 36" may be a pole). */
+static int clearness(const char *word) {
+    static const char *const clear[] = { "led", "leds", "hps", "hpsv", "lps", "sox", "hql", "hqi", "cfl" };
+    static const char *const some[] = { "son", "sont", "nav", "hpl",  "cdm", "cdmt", "cpo", "cdo", "shp", "sap",
+                                        "hst", "hse",  "hme", "vsap", "mh",  "mv",   "hci", "cmh", "sod", "merc" };
+    for (size_t i = 0; i < NOC_COUNT(clear); i++)
+        if (!strcmp(word, clear[i]))
+            return 2;
+    for (size_t i = 0; i < NOC_COUNT(some); i++)
+        if (!strcmp(word, some[i]))
+            return 1;
+    return strlen(word) > 4 && strncmp(word, "halogen", 8) != 0 && strncmp(word, "gas", 3) != 0 ? 2 : 0;
+}
+
+static bool is_lamps_power(double watts) {
+    static const short usual[] = { 18,  35,  36,  40,  50,  55,  60,  70,  75,  80,  90,  100, 125, 135, 150,
+                                   175, 180, 200, 210, 250, 310, 320, 350, 360, 400, 600, 700, 750, 1000 };
+    for (size_t i = 0; i < NOC_COUNT(usual); i++)
+        if (watts == usual[i])
+            return true;
+    return false;
+}
+
+/* Is the number at i beside a source's name, behind letters of its code at most? */
+static bool beside_source(const tokens *t, size_t i) {
+    for (size_t k = i; k-- > 0 && !t->list[k].number;) {
+        if (t->list[k].source)
+            return !(t->list[i].glued && !strncmp(t->list[k].word, "led", 3)); /* LED36: of so many diodes */
+        if (!goes_with_source(t->list[k].word))
+            break;
+    }
+    return i + 1 < t->count && t->list[i + 1].source;
+}
+
+/* 830 behind a fluorescent tube: a colour rendering over 80 and 3000 K. */
+static double colour_code(double value) {
+    double code = fmod(value, 100);
+    bool is =
+        value >= 600 && value < 1000 &&
+        (code == 22 || code == 27 || code == 30 || code == 35 || code == 40 || code == 50 || code == 57 || code == 65);
+    return is ? code * 100 : 0;
+}
+
+static bool within(double value, double least, double most) { return value >= least && value <= most; }
+
+/* "2 x 36": the number before the sign. */
+static int times_before(const tokens *t, size_t i) {
+    if (i < 2 || !is_word(t, i - 1, "x") || !t->list[i - 2].number)
+        return 0;
+    double n = t->list[i - 2].value;
+    return within(n, 1, GEO_MAX_HEADS) && n == floor(n) ? (int)n : 0;
+}
+
+static bool is_head_word(const char *word) {
+    static const char *const words[] = { "acorn",   "arm",      "arms",      "head",       "heads",
+                                         "globe",   "globes",   "lantern",   "lamp",       "lamps",
+                                         "light",   "lights",   "luminaire", "luminaires", "fixture",
+                                         "leuchte", "leuchten", "lampen",    "armaturen",  "bracket" };
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(word, words[i]))
+            return true;
+    return false;
+}
+
+/* "double acorn", "3 heads", "zweiflammig". */
+static int heads_in_words(const tokens *t) {
+    static const struct {
+        const char *word;
+        int heads;
+        bool whole; /* needs no word behind it */
+    } words[] = { { "double", 2, false },      { "twin", 2, false },       { "dual", 2, false },
+                  { "triple", 3, false },      { "quad", 4, false },       { "doppel", 2, false },
+                  { "dubbele", 2, false },     { "zweiflammig", 2, true }, { "dreiflammig", 3, true },
+                  { "doppelleuchte", 2, true } };
+    for (size_t i = 0; i < t->count; i++) {
+        const token *w = &t->list[i];
+        bool named = i + 1 < t->count && !t->list[i + 1].number && is_head_word(t->list[i + 1].word);
+        if (w->number && named && !w->glued && within(w->value, 1, GEO_MAX_HEADS) && w->value == floor(w->value))
+            return (int)w->value;
+        for (size_t k = 0; k < NOC_COUNT(words) && !w->number; k++)
+            if (!strcmp(w->word, words[k].word) && (named || words[k].whole))
+                return words[k].heads;
+    }
+    return 0;
+}
+
+static void read_numbers(const tokens *t, bool watts_column, lamp_model *m) {
+    bool tubes = m->source == GEO_SOURCE_FLUORESCENT || m->source == GEO_SOURCE_LED;
+    for (size_t i = 0; i < t->count; i++) {
+        const token *n = &t->list[i];
+        if (!n->number)
+            continue;
+        if (n->unit == LAMP_LUMENS && !isfinite(m->lumens) && within(n->value, 50, LAMP_MOST_LUMENS))
+            m->lumens = n->value;
+        if (n->unit == LAMP_KELVIN && within(n->value, 1000, 20000))
+            m->kelvin = n->value;
+        if (n->unit == LAMP_PLAIN && tubes && colour_code(n->value) > 0 && !isfinite(m->kelvin)) {
+            m->kelvin = colour_code(n->value);
+            continue;
+        }
+        bool unit = n->unit == LAMP_WATTS && within(n->value, .5, LAMP_MOST_WATTS);
+        bool bare = n->unit == LAMP_PLAIN && within(n->value, 4, 1500) && !is_word(t, i + 1, "x") &&
+                    (watts_column || beside_source(t, i));
+        if (!(unit && !m->unit) && !(bare && !isfinite(m->watts)))
+            continue;
+        m->watts = n->value;
+        m->unit = unit;
+        m->clear_unit = unit && (!strncmp(t->list[i + 1].word, "wat", 3) || i + 2 == t->count);
+        m->heads = times_before(t, i);
+    }
+}
+
+lamp_model lamp_model_of(const char *text, bool watts_column, char decimal) {
+    tokens t;
+    char folded[256];
+    lamp_model m = { .source = GEO_SOURCE_UNKNOWN, .watts = NAN, .lumens = NAN, .kelvin = NAN };
+    split(text, decimal, &t);
+    find_units(&t);
+    bool named = find_sources(&t);
+    lamp_fold(text, true, folded, sizeof(folded));
+    m.source = lamp_source_word(folded);
+    m.source = m.source < 0 ? GEO_SOURCE_UNKNOWN : m.source;
+    read_numbers(&t, watts_column, &m);
+    if (!m.heads)
+        m.heads = heads_in_words(&t);
+    m.plain = named;
+    for (size_t i = 0; i < t.count; i++) {
+        const token *w = &t.list[i];
+        m.clear = w->source ? NOC_MAX(m.clear, clearness(w->word)) : m.clear;
+        m.plain = m.plain && (w->number || w->source || goes_with_source(w->word));
+    }
+    return m;
+}
+
+bool lamp_model_stands_alone(const lamp_model *m) {
+    bool watts = isfinite(m->watts) && within(m->watts, 4, 2000), source = m->source != GEO_SOURCE_UNKNOWN;
+    if (watts && m->unit) /* "100 W Main Street" is no lamp's */
+        return source || m->clear_unit;
+    return source && ((m->clear == 2 && (m->plain || watts)) || (m->clear && watts && is_lamps_power(m->watts)));
+}
