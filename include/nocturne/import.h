@@ -88,9 +88,10 @@ typedef struct noc_import_params {
      * has roads of its own. ON: always. */
     noc_switch map_surfaces;
     double building_height; /* m, of those that tell neither height nor storeys; default 9 */
-    /* Place lamps by a rule? AUTO, the default: where the inputs hold none, along the lit roads of maps, else along
-     * streets or buildings; inputs whose lamps are all of no use are an error. ON: along lit roads of maps that have
-     * none, beside those that are mapped, too, and where no lamp of the inputs is of use. OFF: nowhere. */
+    /* Place lamps by a rule? AUTO, the default: along lit streets of maps that have none, whatever other streets have,
+     * unless the inputs hold lights of another kind; where nothing shines then, along streets or buildings; inputs
+     * whose lamps are all of no use are an error. ON: the same beside other lights, and where no lamp of the inputs is
+     * of use. OFF: nowhere. */
     noc_switch infer_lamps;
     bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
                     rule that infer_lamps does not ask for by ON; default false */

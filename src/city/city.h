@@ -138,8 +138,9 @@ typedef struct city_road_lamp {
 } city_road_lamp;
 
 typedef struct city_road_params {
-    double height;        /* m, of lamps in streets where people live; others in proportion */
-    const double *mapped; /* 2 a lamp that is there: within a spacing of it none is placed */
+    double height; /* m, of lamps in streets where people live; others in proportion */
+    const double
+        *mapped; /* 2 a lamp that is there: within a spacing of it none is placed, within two none of its street */
     size_t mapped_count;
     const noc_scene *water; /* surfaces of water that the scene has not, seen from above; NULL: none */
     bool (*inside)(void *user, const double xy[2]); /* may one stand there at all? NULL: anywhere */
@@ -147,12 +148,13 @@ typedef struct city_road_params {
     const noc_progress *progress; /* NULL: none */
 } city_road_params;
 
-/* Places for lamps along roads that are lit by their own word, or, where no lamp is mapped and no road tells whether it
- * is lit, by their class: off other carriageways and so the middle of junctions, off railways, water, tunnels and
- * buildings of the scene. *lamps: to be freed, whatever order the roads are in with the same places in the same order.
+/* Places for lamps along roads that are lit by their own word, or, where no lamp is
+ * mapped and no road tells whether it is lit, by their class: off other carriageways and so the middle of junctions,
+ * off railways, water, tunnels and buildings of the scene. *lamps: to be freed, whatever order the roads are in with
+ * the same places in the same order; *streets: how many streets they stand along.
  */
 noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city_road_params *params,
-                           city_road_lamp **lamps, size_t *count);
+                           city_road_lamp **lamps, size_t *count, size_t *streets);
 
 /* A ground under a city without terrain, a little larger than it, at the height its buildings stand at; skirts from
  * walls that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must

@@ -22,6 +22,7 @@
 #define PATH_BESIDE 8.0 /* m from a lit road's edge in which its lamps light a path */
 #define OWN_WAY 0.5     /* of its spacing in which a lamp bears none of another way */
 #define OWN_OTHER 0.25  /* the same of one that faces it, across the two carriageways */
+#define OWN_STREET 2.0  /* spacings off mapped lamps of its street: what is lit more sparsely is not lit there */
 #define MOST_LAMPS 200000
 #define MOST_NEAR 4096 /* mapped lamps in a square of the spacing: there is no room for more */
 #define LONGEST 200e3  /* m of a way that gets lamps */
@@ -55,7 +56,9 @@ typedef struct placing {
     NOC_ARRAY(double) sums; /* of the present way: its length up to each point */
     NOC_ARRAY(city_road_lamp) found;
     NOC_ARRAY(way_order) ways; /* that are lit */
-    size_t without;            /* of these, ways that are left without lamps */
+    road_streets streets;
+    uint32_t *mapped_of; /* of each mapped lamp its street */
+    size_t without;      /* of these, ways that are left without lamps */
 } placing;
 
 static uint64_t mix(uint64_t h) {
@@ -111,11 +114,15 @@ static bool on_water(const placing *p, const double xy[2]) {
            !(noc_scene_highest(scene, firm, xy[0], xy[1], &ground) && ground > water);
 }
 
-static bool is_mapped(const placing *p, const double xy[2], double within) {
+/* Two spacings from mapped lamps of its own street, and one from others. */
+static bool is_mapped(const placing *p, const geo_road *road, const double xy[2]) {
+    uint32_t street = p->streets.of[road - p->roads->roads];
+    double spacing = spacing_of(p, road);
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
         for (uint32_t k = *geo_cells_at(&p->mapped, xy, c); k; k = p->mapped.next[k - 1]) {
             const double *at = p->params->mapped + 2 * (size_t)(k - 1);
+            double within = spacing * (p->mapped_of[k - 1] == street ? OWN_STREET : 1);
             if (hypot(at[0] - xy[0], at[1] - xy[1]) < within || seen++ == MOST_NEAR)
                 return true;
         }
@@ -127,7 +134,7 @@ static bool may_stand(const placing *p, const geo_road *road, const double xy[2]
     double z;
     if (!(fabs(xy[0]) < ROADS_FARTHEST && fabs(xy[1]) < ROADS_FARTHEST))
         return false;
-    if (is_mapped(p, xy, spacing_of(p, road)) || (p->params->inside && !p->params->inside(p->params->user, xy)) ||
+    if (is_mapped(p, road, xy) || (p->params->inside && !p->params->inside(p->params->user, xy)) ||
         !clear_of_roads(p, road, xy) || (!road->bridge && on_water(p, xy)))
         return false;
     return !site_covered(p->scene, xy[0], xy[1], noc_scene_ground(p->scene, xy[0], xy[1], &z) ? z : -INFINITY);
@@ -241,13 +248,25 @@ static int by_hash(const void *a, const void *b) {
     return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-static void along_all(placing *p) {
-    const noc_progress *progress = p->params->progress;
-    for (size_t i = 0; i < p->roads->count && !p->no_memory; i++) {
+/* Lit ways, and the streets of mapped lamps. */
+static void find_ways(placing *p) {
+    size_t count = p->roads->count, mapped = p->params->mapped_count;
+    bool *lit = noc_alloc((count + 1) * sizeof(*lit));
+    p->mapped_of = noc_alloc((mapped + 1) * sizeof(*p->mapped_of));
+    p->no_memory = p->no_memory || !lit || !p->mapped_of || !road_streets_create(p->roads, &p->streets);
+    for (size_t i = 0; i < count && !p->no_memory; i++) {
         const geo_road *road = &p->roads->roads[i];
-        if (is_lit(p, road))
+        lit[i] = is_lit(p, road);
+        if (lit[i])
             p->no_memory = !array_push(&p->ways, (way_order){ hash_of(road->id), road });
     }
+    for (size_t i = 0; i < mapped && !p->no_memory; i++)
+        p->mapped_of[i] = road_streets_beside(p->roads, &p->streets, lit, p->params->mapped + 2 * i);
+    free(lit);
+}
+
+static void along_all(placing *p) {
+    const noc_progress *progress = p->params->progress;
     if (p->ways.len > 1)
         qsort(p->ways.data, p->ways.len, sizeof(*p->ways.data), by_hash);
     for (size_t i = 0; i < p->ways.len && !p->no_memory && !p->cancelled; i++) {
@@ -310,20 +329,24 @@ static bool tells_nothing(const city_roads *roads) {
 }
 
 noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city_road_params *params,
-                           city_road_lamp **lamps, size_t *count) {
+                           city_road_lamp **lamps, size_t *count, size_t *streets) {
     placing p = { .roads = roads, .params = params, .scene = scene, .reach = SPACING * 2 * params->height };
     p.by_class = !params->mapped_count && tells_nothing(roads);
     *lamps = NULL;
     *count = 0;
-    p.no_memory = !geo_cells_create(&p.mapped, params->mapped_count + 1, p.reach);
+    p.no_memory = !geo_cells_create(&p.mapped, params->mapped_count + 1, OWN_STREET * p.reach);
     for (size_t i = 0; i < params->mapped_count && !p.no_memory; i++)
         geo_cells_add(&p.mapped, params->mapped + 2 * i, i);
+    find_ways(&p);
     along_all(&p);
     geo_cells_free(&p.mapped);
     array_free(&p.ways);
     array_free(&p.sums);
     if (!p.no_memory && !p.cancelled)
         thin_out(&p);
+    *streets = p.no_memory || p.cancelled ? 0 : road_streets_count(roads, &p.streets, p.found.data, p.found.len);
+    road_streets_free(&p.streets);
+    free(p.mapped_of);
     if (p.too_many && !p.no_memory && !p.cancelled)
         noc_warn(scene->log,
                  "%zu lit roads of maps have no lamps, or not all: %d are the most. --bbox takes less of the "

@@ -2,10 +2,9 @@
 
 #include <math.h>
 
-#define LONGEST 20e3 /* m between two points of a road, more than any has */
-#define MOST 4096    /* pieces of a cell that are looked at */
-#define BESIDE 25.0  /* m from the middle of a road to a lamp that lights it */
-#define PATH_AWAY 3  /* m by which a path counts as farther than a road */
+#define LONGEST 20e3  /* m between two points of a road, more than any has */
+#define MOST 4096     /* pieces of a cell that are looked at */
+#define PATH_AWAY 3.0 /* m by which a path counts as farther than a road */
 
 static bool add_pieces(city_roads *r, uint32_t road, const double *from, const double *to) {
     double length = hypot(to[0] - from[0], to[1] - from[1]);
@@ -81,6 +80,10 @@ bool road_walk_next(road_walk *w) {
     return true;
 }
 
+double road_off(const geo_road *road, double distance) {
+    return distance - geo_road_width(road) / 2 + (road->cls == GEO_ROAD_PATH ? PATH_AWAY : 0);
+}
+
 const geo_road *city_roads_street(const city_roads *roads, const double xy[2]) {
     const geo_road *found = NULL;
     double best = INFINITY;
@@ -88,7 +91,7 @@ const geo_road *city_roads_street(const city_roads *roads, const double xy[2]) {
         const geo_road *road = &roads->roads[w.piece->road];
         double d = road_distance(w.piece, xy, NULL), off = d - geo_road_width(road) / 2;
         bool nearer = off < best || (off == best && found && strcmp(road->id, found->id) < 0);
-        if (!*road->name || road->cls == GEO_ROAD_RAIL || road->tunnel || d > BESIDE || !nearer)
+        if (!*road->name || road->cls == GEO_ROAD_RAIL || road->tunnel || d > ROADS_BESIDE || !nearer)
             continue;
         best = off;
         found = road;
@@ -103,9 +106,9 @@ const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], d
     for (road_walk w = road_walk_start(roads, xy); road_walk_next(&w);) {
         const geo_road *road = &roads->roads[w.piece->road];
         double nearest[2], d = road_distance(w.piece, xy, nearest);
-        double off = d - geo_road_width(road) / 2 + (road->cls == GEO_ROAD_PATH ? PATH_AWAY : 0);
+        double off = road_off(road, d);
         bool nearer = off < best || (off == best && found && strcmp(road->id, found->id) < 0);
-        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > BESIDE || (facing && d < .1) || !nearer)
+        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > ROADS_BESIDE || (facing && d < .1) || !nearer)
             continue;
         best = off;
         found = road;

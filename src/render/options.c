@@ -140,7 +140,7 @@ static const noc_option import_options[] = {
            "surfaces of roads and areas of maps; auto: with footprints, no roads of models"),
     REAL(P, building_height, "building-height", "City", 1, 500, "m", "height of such a block that tells none"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
-           "place lamps by a rule: where no input holds any; on: on all lit roads without"),
+           "place lamps by a rule on lit streets that have none; on: even if none is of use"),
     TEXT(P, environment, "environment", "City", "FILE",
          "equirectangular EXR or HDR picture around the city: its background, and light"),
     BOOL(P, textures, "textures", "City", "images and colours that city models give to surfaces"),

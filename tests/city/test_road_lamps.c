@@ -13,7 +13,7 @@ typedef struct town {
     size_t mapped_count;
     noc_scene *scene;
     city_road_lamp *lamps;
-    size_t found;
+    size_t found, streets;
 } town;
 
 static void begin(town *t) { *t = (town){ .scene = noc_scene_create(NULL) }; }
@@ -38,7 +38,7 @@ static void infer_params(town *t, city_road_params params) {
     params.height = 6;
     params.mapped = t->mapped;
     params.mapped_count = t->mapped_count;
-    assert_int_equal(city_road_lamps(t->scene, roads, &params, &t->lamps, &t->found), NOC_OK);
+    assert_int_equal(city_road_lamps(t->scene, roads, &params, &t->lamps, &t->found, &t->streets), NOC_OK);
     city_roads_destroy(roads);
 }
 
@@ -310,6 +310,57 @@ static void stable(void **state) {
 static bool north(void *user, const double xy[2]) { return xy[1] > *(double *)user; }
 static bool stop(void *user, const char *what, double done) { return false; }
 
+/* A lamp that is mapped every so many metres along a street from (x, y) east. */
+static void map_along(town *t, double x, double y, double length, double each) {
+    for (double at = each / 2; at < length; at += each) {
+        t->mapped[2 * t->mapped_count] = x + at;
+        t->mapped[2 * t->mapped_count++ + 1] = y;
+    }
+}
+
+/* How far east the first of its lamps stands. */
+static double first_along(const town *t, const geo_road *road) {
+    double least = INFINITY;
+    for (size_t i = 0; i < t->found; i++)
+        least = t->lamps[i].road == road ? NOC_MIN(least, t->lamps[i].xy[0]) : least;
+    return least;
+}
+
+/* Each street by itself: lamps of one silence no other, and its own keep the rule off for two spacings, whichever of
+ * its ways they stand beside. */
+static void streets(void **state) {
+    town t;
+    begin(&t);
+    geo_road *a = add(&t, GEO_ROAD_MINOR, 0, 0, 240, 0), *b = add(&t, GEO_ROAD_MINOR, 240, 0, 288, 0);
+    geo_road *c = add(&t, GEO_ROAD_MINOR, 0, 200, 240, 200), *d = add(&t, GEO_ROAD_MINOR, 0, 400, 480, 400);
+    a->name = b->name = "Main Street"; /* b has no lamp of its own, and is the same street */
+    map_along(&t, 0, 4, 240, 60);
+    infer(&t);
+    assert_int_equal(along(&t, a), 0);          /* every 60 m where the rule has 24 */
+    assert_true(first_along(&t, b) > 210 + 47); /* the last one of Main Street stands at 210 */
+    assert_int_equal(along(&t, c), 10);
+    assert_int_equal(along(&t, d), 20);
+    assert_int_equal(t.streets, 3);
+    b->name = "Another"; /* one spacing off the lamps of others */
+    infer(&t);
+    assert_int_equal(along(&t, a), 0);
+    assert_float_equal(first_along(&t, b), 252, 1e-9);
+    assert_int_equal(along(&t, b), 2);
+    assert_int_equal(t.streets, 3);
+    c->name = "Main Street"; /* which does not meet the other of that name */
+    infer(&t);
+    assert_int_equal(along(&t, c), 10);
+    /* one lamp in a long street keeps the rule off for 48 m to both sides */
+    t.mapped_count = 0;
+    map_along(&t, 228, 404, 24, 24);
+    infer(&t);
+    assert_int_equal(along(&t, a), 10);
+    assert_int_equal(along(&t, d), 16);
+    for (size_t i = 0; i < t.found; i++)
+        assert_true(t.lamps[i].road != d || fabs(t.lamps[i].xy[0] - 240) > 47);
+    end(&t);
+}
+
 static void asked(void **state) {
     town t;
     double from = 0;
@@ -321,8 +372,8 @@ static void asked(void **state) {
     city_roads *roads = city_roads_create(t.roads, t.count);
     city_road_params params = { .height = 6, .progress = &progress };
     city_road_lamp *lamps;
-    size_t count;
-    assert_int_equal(city_road_lamps(t.scene, roads, &params, &lamps, &count), NOC_ERR_CANCELLED);
+    size_t count, streets;
+    assert_int_equal(city_road_lamps(t.scene, roads, &params, &lamps, &count, &streets), NOC_ERR_CANCELLED);
     assert_true(!lamps && !count);
     city_roads_destroy(roads);
     end(&t);
@@ -394,8 +445,9 @@ static void too_many(void **state) {
     for (size_t count = ROADS - 1; count <= ROADS; count++) {
         city_roads *of = city_roads_create(roads, count);
         city_road_lamp *lamps;
-        size_t found;
-        assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found), NOC_OK);
+        size_t found, streets;
+        assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found, &streets),
+                         NOC_OK);
         assert_true(count == ROADS ? found >= 200000 && found < 200002 : found > 190000 && found < 200000);
         assert_int_equal(warned, count == ROADS);
         sum = sum_of(lamps, found);
@@ -404,8 +456,8 @@ static void too_many(void **state) {
     }
     city_roads *of = city_roads_create(turned, ROADS);
     city_road_lamp *lamps;
-    size_t found;
-    assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found), NOC_OK);
+    size_t found, streets;
+    assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found, &streets), NOC_OK);
     assert_true(fabs(sum_of(lamps, found) - sum) < 1e-6 * sum);
     free(lamps);
     city_roads_destroy(of);
@@ -415,15 +467,13 @@ static void too_many(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_side),    cmocka_unit_test(both_sides),
-        cmocka_unit_test(by_class),    cmocka_unit_test(junction),
-        cmocka_unit_test(dark),        cmocka_unit_test(untold),
-        cmocka_unit_test(railway),     cmocka_unit_test(layers),
-        cmocka_unit_test(water),       cmocka_unit_test(dual_carriageway),
-        cmocka_unit_test(half_mapped), cmocka_unit_test(path_beside),
-        cmocka_unit_test(buildings),   cmocka_unit_test(stable),
-        cmocka_unit_test(asked),       cmocka_unit_test(odd),
-        cmocka_unit_test(facing),      cmocka_unit_test(too_many),
+        cmocka_unit_test(one_side),         cmocka_unit_test(both_sides),  cmocka_unit_test(by_class),
+        cmocka_unit_test(junction),         cmocka_unit_test(dark),        cmocka_unit_test(untold),
+        cmocka_unit_test(railway),          cmocka_unit_test(layers),      cmocka_unit_test(water),
+        cmocka_unit_test(dual_carriageway), cmocka_unit_test(half_mapped), cmocka_unit_test(path_beside),
+        cmocka_unit_test(buildings),        cmocka_unit_test(stable),      cmocka_unit_test(asked),
+        cmocka_unit_test(streets),          cmocka_unit_test(odd),         cmocka_unit_test(facing),
+        cmocka_unit_test(too_many),
     };
     return cmocka_run_group_tests_name("city/road_lamps", tests, NULL, NULL);
 }

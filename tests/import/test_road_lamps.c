@@ -1,5 +1,5 @@
 /* Lamps along the roads of a map, from files to a scene: when there are some, and where. */
-#include "test.h"
+#include "../told.h"
 
 #include "import/load/load.h"
 #include "noc_config.h"
@@ -34,6 +34,7 @@ static noc_import_params params_of(noc_switch infer, bool isolate) {
 static void load_params(const noc_import_params *params, const char *a, const char *b) {
     const char *paths[] = { a, b };
     forget();
+    *told = 0;
     scene = noc_scene_create(log_);
     if (noc_scene_load(scene, paths, b ? 2 : 1, params, &report))
         fail_msg("%s", noc_log_last_error(log_));
@@ -78,7 +79,7 @@ static size_t within(double x0, double y0, double x1, double y1, bool inferred) 
 #define FAR_LAMP LAMP("node/1", "[690120,5330300]")
 #define NEAR_LAMP LAMP("node/2", "[690001,5330004]")
 
-/* Where no lamp is mapped: along what is lit. Where some are: only where that is asked for. */
+/* Along what is lit and has none, whether lamps are mapped elsewhere or not. */
 static void when(void **state) {
     const char *plain = write_file("plain.json", MAP(LIT("way/1") "," DARK("way/2")));
     const char *lamps = write_file("lamps.json", MAP(LIT("way/1") "," DARK("way/2") "," FAR_LAMP "," NEAR_LAMP));
@@ -86,9 +87,11 @@ static void when(void **state) {
     assert_int_equal(within(-5, -10, 245, 10, true), 10);
     assert_int_equal(load(NOC_SWITCH_ON, plain, NULL), 10);
     assert_int_equal(load(NOC_SWITCH_OFF, plain, NULL), 0);
-    assert_int_equal(load(NOC_SWITCH_AUTO, lamps, NULL), 0);
-    assert_int_equal(load(NOC_SWITCH_ON, lamps, NULL), 9); /* one spacing from the mapped one there is none */
-    assert_int_equal(within(24, -10, 245, 10, true), 9);
+    assert_int_equal(load(NOC_SWITCH_OFF, lamps, NULL), 0);
+    assert_int_equal(load(NOC_SWITCH_AUTO, lamps, NULL), 8);
+    assert_non_null(strstr(told, "8 lamps placed along 1 lit street of the map that has none of its own there"));
+    assert_int_equal(load(NOC_SWITCH_ON, lamps, NULL), 8); /* two spacings from the street's own there is none */
+    assert_int_equal(within(48, -10, 245, 10, true), 8);
     assert_int_equal(within(-10, -10, 400, 400, false), 2);
     noc_report_totals totals;
     noc_report_get_totals(report, &totals);
@@ -156,20 +159,59 @@ static void facing(void **state) {
     assert_int_equal(within(99.9, 96.3, 100.1, 98, false), 1); /* its arm reaches north */
 }
 
+/* A dozen lamps of one street, and 2 km of other lit streets, which they do not silence: in two files or in one. */
+static void a_dozen(void **state) {
+    char lamps[4000] = "", roads[8000] = "", both[12000], text[12200];
+    size_t n = 0, m = 0;
+    for (int i = 0; i < 12; i++)
+        n += (size_t)snprintf(lamps + n, sizeof(lamps) - n, "%s" LAMP("node/%d", "[%d,5330004]"), i ? "," : "", i,
+                              690010 + 20 * i);
+    for (int i = 0; i < 10; i++) /* the last but one is a part of the one before */
+        m += (size_t)snprintf(roads + m, sizeof(roads) - m,
+                              "%s" LINE("way/%d", "\"highway\":\"residential\",\"lit\":\"yes\",\"name\":\"S%d\"",
+                                        "[%d,%d],[%d,%d]"),
+                              i ? "," : "", i, i == 8 ? 7 : i, i == 8 ? 690240 : 690000,
+                              5330000 + 100 * (i == 8 ? 7 : i), i == 8 ? 690480 : 690240,
+                              5330000 + 100 * (i == 8 ? 7 : i));
+    snprintf(text, sizeof(text), MAP("%s"), lamps);
+    const char *of_lamps = write_file("dozen.json", text);
+    snprintf(text, sizeof(text), MAP("%s"), roads);
+    const char *of_roads = write_file("streets.json", text);
+    snprintf(both, sizeof(both), "%s,%s", lamps, roads);
+    snprintf(text, sizeof(text), MAP("%s"), both);
+    const char *of_both = write_file("both.json", text);
+    for (int files = 1; files <= 2; files++) {
+        assert_int_equal(load(NOC_SWITCH_AUTO, files == 1 ? of_both : of_roads, files == 1 ? NULL : of_lamps), 90);
+        assert_int_equal(within(-50, -20, 500, 20, true), 0);
+        assert_int_equal(within(-50, -20, 500, 20, false), 12);
+        assert_non_null(
+            strstr(told, "90 lamps placed along 8 lit streets of the map that have none of their own there"));
+    }
+    assert_int_equal(load(NOC_SWITCH_OFF, of_both, NULL), 0);
+}
+
 /* What is made up is an error, unless it is asked for. */
 static void strict(void **state) {
-    const char *paths[] = { write_file("plain.json", MAP(LIT("way/1"))) };
-    for (int asked = 0; asked < 2; asked++) {
-        noc_import_params params = params_of(asked ? NOC_SWITCH_ON : NOC_SWITCH_AUTO, false);
-        params.strict = true;
-        forget();
-        scene = noc_scene_create(log_);
-        assert_int_equal(noc_scene_load(scene, paths, 1, &params, &report), asked ? NOC_OK : NOC_ERR_FORMAT);
-    }
+    const char *paths[] = { write_file("plain.json", MAP(LIT("way/1"))),
+                            write_file("lamps.json", MAP(LIT("way/1") "," FAR_LAMP)) };
+    static const char *const why[] = { "no lamps in the inputs, 10 placed by a rule",
+                                       "lit streets without lamps, 10 placed by a rule" };
+    for (int asked = 0; asked < 2; asked++)
+        for (int lamps = 0; lamps < 2; lamps++) {
+            noc_import_params params = params_of(asked ? NOC_SWITCH_ON : NOC_SWITCH_AUTO, false);
+            params.strict = true;
+            params.lamp_chosen = ~0u;
+            forget();
+            *told = 0;
+            scene = noc_scene_create(log_);
+            assert_int_equal(noc_scene_load(scene, paths + lamps, 1, &params, &report),
+                             asked ? NOC_OK : NOC_ERR_FORMAT);
+            assert_true(asked || strstr(told, why[lamps]));
+        }
 }
 
 static int start(void **state) {
-    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR });
+    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
     return mkdtemp(folder) ? 0 : -1;
 }
 
@@ -181,8 +223,8 @@ static int finish(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(when), cmocka_unit_test(stable), cmocka_unit_test(water),
-        cmocka_unit_test(box),  cmocka_unit_test(facing), cmocka_unit_test(strict),
+        cmocka_unit_test(when),   cmocka_unit_test(stable), cmocka_unit_test(water),   cmocka_unit_test(box),
+        cmocka_unit_test(facing), cmocka_unit_test(strict), cmocka_unit_test(a_dozen),
     };
     return cmocka_run_group_tests_name("import/road_lamps", tests, start, finish);
 }

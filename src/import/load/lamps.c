@@ -308,12 +308,16 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
 }
 
 static void tell_along_roads(const importer *im, const lamp_fate *fate) {
-    size_t count = im->report->lamps_inferred;
+    size_t count = im->report->lamps_inferred, streets = im->streets_inferred;
+    const char *many = streets == 1 ? "" : "s";
     if (count && !fate->given)
-        noc_warn(im->log, "no lamps in the inputs: %zu placed along roads of the map (inferred, not surveyed)", count);
+        noc_warn(im->log, "no lamps in the inputs: %zu placed along %zu street%s of the map (inferred, not surveyed)",
+                 count, streets, many);
     else if (count)
-        noc_info(im->log, "%zu lamps placed along roads of the map that are lit and have none (inferred, not surveyed)",
-                 count);
+        noc_warn(im->log,
+                 "%zu lamps placed along %zu lit street%s of the map that ha%s none of %s own there (inferred, not "
+                 "surveyed)",
+                 count, streets, many, streets == 1 ? "s" : "ve", streets == 1 ? "its" : "their");
 }
 
 /* Lamps, of the inputs or by a rule. */
@@ -356,7 +360,8 @@ static noc_status light_city(importer *im, const extent *e) {
 
 /* What the roads of maps tell of lamps, before the ground is laid that those need. */
 static noc_status ask_roads(importer *im) {
-    bool missing = !im->lamps.len && !im->lost.len && !shines(im->scene);
+    bool wanted =
+        im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && !shines(im->scene));
     if (!im->roads.len)
         return NOC_OK;
     city_roads *roads = city_roads_create(im->roads.data, im->roads.len);
@@ -365,7 +370,7 @@ static noc_status ask_roads(importer *im) {
     if (!im->has_roads) /* surfaces are nearer to the truth */
         road_lamps_face(im, roads);
     noc_status status = NOC_OK;
-    if (im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && missing))
+    if (wanted)
         status = road_lamps_add(im, roads);
     if (luminaires_ask_roads(im) || im->params->each_lamp)
         im->roads_by_place = roads;

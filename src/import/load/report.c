@@ -177,9 +177,10 @@ static size_t guesses_at_lamps(const noc_report *report, const noc_import_params
     if (t.lamps_inferred && params->infer_lamps != NOC_SWITCH_ON) {
         guesses += t.lamps_inferred;
         noc_snprintf(text + n, size - n,
-                     "; no lamps in the inputs, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes "
-                     "these, --no-infer-lamps leaves the city dark)",
-                     t.lamps_inferred);
+                     "; %s, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes these, "
+                     "--no-infer-lamps leaves %s dark)",
+                     t.lamps_mapped ? "lit streets without lamps" : "no lamps in the inputs", t.lamps_inferred,
+                     t.lamps_mapped ? "them" : "the city");
     }
     return guesses;
 }

@@ -85,7 +85,7 @@ static noc_status place_along(importer *im, const city_roads *roads, const doubl
                                       .progress = &progress };
     city_road_lamp *places;
     size_t count;
-    noc_status status = city_road_lamps(im->scene, roads, &params, &places, &count);
+    noc_status status = city_road_lamps(im->scene, roads, &params, &places, &count, &im->streets_inferred);
     reading_free(&w.reading);
     status = status || !water->no_memory ? status : NOC_ERR_MEMORY;
     noc_scene_destroy(water);
