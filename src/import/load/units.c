@@ -121,22 +121,22 @@ static const char *height_column(const noc_report_file *file) {
     return best ? best->name : "COLUMN";
 }
 
+/* Heights that no unit makes plausible are told of one by one. */
 static void warn_of_lamps(importer *im, input *in, const hanging *h, const char *what, double value, double middle) {
     double factor;
     const char *unit = unit_for(middle, 8, 2, h->median, &factor), *column = height_column(&in->file);
-    char advice[300] = "in which unit are heights?";
-    if (unit)
-        noc_snprintf(advice, sizeof(advice),
-                     "are heights in %s? Times %.5g the median is %.3g m: --lamp-columns height_%s=%.60s says so, and "
-                     "height_m=%.60s that they are metres",
-                     unit, factor, middle * factor,
-                     factor == .3048 ? "ft"
-                     : factor == .1  ? "dm"
-                     : factor == .01 ? "cm"
-                                     : "mm",
-                     column, column);
-    noc_warn(im->log, "%s: the %s, of %zu, is %.3g m, which is hardly where %s hang: %s", in->path, what,
-             in->lamp_heights.len, value, h->where, advice);
+    if (!unit)
+        return;
+    noc_warn(
+        im->log,
+        "%s: the %s, of %zu, is %.3g m, which is hardly where %s hang: are heights in %s? Times %.5g the median is "
+        "%.3g m: --lamp-columns height_%s=%.60s says so, and height_m=%.60s that they are metres",
+        in->path, what, in->lamp_heights.len, value, h->where, unit, factor, middle * factor,
+        factor == .3048 ? "ft"
+        : factor == .1  ? "dm"
+        : factor == .01 ? "cm"
+                        : "mm",
+        column, column);
     geo_issues_add(in->issues, GEO_GUESSED, "height of a lamp without a unit, hardly in metres", in->lamp_heights.len,
                    "");
 }
