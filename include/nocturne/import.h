@@ -254,7 +254,7 @@ typedef struct noc_report_file {
     /* Where a scene was loaded, lamps by what became of them; those in use are mapped. */
     size_t lamps_mapped;     /* stand in the scene */
     size_t lamps_moved;      /* of them: out of a building, or away from another lamp */
-    size_t lamps_dropped;    /* of no use: outside the city, in a building, without a place */
+    size_t lamps_dropped;    /* of no use: outside the city, in a building, without a place (alone where none was) */
     size_t lamps_repeated;   /* that another file holds, too, or the file twice: taken once, and counted there */
     size_t objects_repeated; /* the same of objects; of a file's own, too */
     size_t tracks;           /* of cars, that can be driven */

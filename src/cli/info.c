@@ -189,7 +189,10 @@ static void print_columns(const noc_report_file *file) {
 
 static void print_points(const noc_report_file *file) {
     char a[32];
-    if (file->points && !file->lamps)
+    if (file->points && !file->lamps && file->lamps_dropped)
+        printf("  %-11s %s, lamps whose places are not understood or lie nowhere\n", "points",
+               noc_text_count(a, file->points));
+    else if (file->points && !file->lamps)
         printf("  %-11s %s, and nothing tells that they are lamps in use: --lamps FILE says so\n", "points",
                noc_text_count(a, file->points));
     print_columns(file);

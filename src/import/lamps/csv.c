@@ -1,135 +1,13 @@
-/* Tables of lamps with a header line: commas, semicolons, tabs or bars, quotes as in RFC 4180, UTF-8 or Latin-1. */
+/* Tables of lamps, with a header line unless the user says which columns hold their places: commas, semicolons, tabs or
+ * bars, quotes as in RFC 4180, UTF-8, UTF-16 or Latin-1. */
+#include "import/lamps/records.h"
 #include "import/lamps/tags.h"
 #include "import/tracks/tracks.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define MAX_FIELD (1 << 20)
-#define MAX_FIELDS 4096
-
-typedef struct csv {
-    noc_stream *stream;
-    noc_log *log;
-    char separator;
-    bool special[2][256]; /* bytes that are not just part of a field's text, outside quotes and within */
-    char chunk[1 << 16];
-    size_t len, pos;
-    size_t line; /* where the present record began, from 1 */
-    size_t next_line;
-    NOC_ARRAY(char) text; /* fields of the record, each ended by a 0 */
-    NOC_ARRAY(size_t) start;
-    bool ended;
-} csv;
-
-/* Next byte, -1 at the end, -2 on an error that was reported. */
-static int next_byte(csv *c, noc_status *status) {
-    if (c->pos == c->len) {
-        c->pos = 0;
-        *status = noc_stream_read(c->stream, c->chunk, sizeof(c->chunk), &c->len);
-        if (*status || !c->len) {
-            c->len = 0;
-            return *status ? -2 : -1;
-        }
-    }
-    return (unsigned char)c->chunk[c->pos++];
-}
-
-/* How many of the next bytes are a field's text and nothing else; 0 where the next one must be looked at, or read. */
-static size_t plain_run(const csv *c, bool quoted) {
-    const bool *special = c->special[quoted];
-    size_t end = c->pos;
-    while (end < c->len && !special[(unsigned char)c->chunk[end]])
-        end++;
-    return end - c->pos;
-}
-
-static noc_status bad(csv *c, const char *cause) {
-    return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: %s", noc_stream_name(c->stream), c->line, cause);
-}
-
 static noc_status no_memory(csv *c) { return noc_no_memory(c->log, noc_stream_name(c->stream)); }
-
-/* Reads a record; at the end of the table leaves no fields. */
-static noc_status read_record(csv *c) {
-    noc_status status = NOC_OK;
-    c->text.len = c->start.len = 0;
-    c->line = c->next_line;
-    bool quoted = false, was_quoted = false;
-    for (size_t field = 0;;) {
-        size_t run = plain_run(c, quoted);
-        if (run) {
-            if (c->text.len - field + run > MAX_FIELD + 1)
-                return bad(c, "a field longer than 1 MB");
-            if (!array_append(&c->text, c->chunk + c->pos, run))
-                return no_memory(c);
-            c->pos += run;
-            was_quoted = false;
-            continue;
-        }
-        int ch = next_byte(c, &status);
-        if (ch == -2)
-            return status;
-        if (ch == -1 && quoted)
-            return bad(c, "a quote is not closed before the end of the file");
-        if (ch == -1 && !c->start.len && c->text.len == 0)
-            return NOC_OK;
-        if (ch == 0)
-            return bad(c, "a zero byte: this is no text");
-        if (ch == '\n')
-            c->next_line++;
-        bool end_record = ch == -1 || (ch == '\n' && !quoted);
-        if (quoted && ch == '"') {
-            quoted = false; /* a second one, at once, is a quote in the text */
-            was_quoted = true;
-            continue;
-        }
-        if (!quoted && ch == '"' && (c->text.len == field || was_quoted)) {
-            if (was_quoted && !array_push(&c->text, '"'))
-                return no_memory(c);
-            quoted = true;
-            was_quoted = false;
-            continue;
-        }
-        was_quoted = false;
-        if (!end_record && (quoted || ch != c->separator)) {
-            if (c->text.len - field > MAX_FIELD)
-                return bad(c, "a field longer than 1 MB");
-            if (!array_push(&c->text, (char)ch))
-                return no_memory(c);
-            continue;
-        }
-        if (end_record && c->text.len > field && c->text.data[c->text.len - 1] == '\r')
-            c->text.len--;
-        if (c->start.len == MAX_FIELDS)
-            return bad(c, "more than 4096 columns");
-        if (!array_push(&c->text, '\0') || !array_push(&c->start, field))
-            return no_memory(c);
-        field = c->text.len;
-        if (end_record)
-            return NOC_OK;
-    }
-}
-
-static const char *field(const csv *c, size_t i) { return c->text.data + c->start.data[i]; }
-
-/* The separator that is found most often in the first line, outside quotes; 0 if there is none. */
-static char find_separator(const char *head, size_t size) {
-    static const char separators[] = ",;\t|";
-    size_t count[4] = { 0 };
-    bool quoted = false;
-    for (size_t i = 0; i < size && head[i] && (quoted || head[i] != '\n'); i++) {
-        const char *s = strchr(separators, head[i]);
-        quoted ^= head[i] == '"';
-        if (s && !quoted)
-            count[s - separators]++;
-    }
-    int best = 0;
-    for (int i = 1; i < 4; i++)
-        if (count[i] > count[best])
-            best = i;
-    return count[best] ? separators[best] : 0;
-}
 
 typedef struct columns {
     lamp_keys *keys; /* NULL: by the words alone */
@@ -138,6 +16,8 @@ typedef struct columns {
     int lon, lat, x, y, wkt, lat_lon, z; /* -1: none */
     double z_scale;
     bool tags, inventory, asked;
+    bool headless; /* the first line is a row */
+    bool placed;   /* a row has a place */
 } columns;
 
 static int find_column(const columns *cols, lamp_field wanted) {
@@ -179,9 +59,23 @@ static void free_columns(columns *cols) {
     free(cols->names);
 }
 
+enum { PROBED = 8192 }; /* bytes of UTF-16 that are looked at */
+
+/* Of UTF-16 the beginning as UTF-8, in `decoded`. Returns its size. */
+static size_t decode_head(const char **head, size_t size, char *decoded) {
+    utf16 units = { .order = utf16_order_of(*head, size) };
+    if (!units.order)
+        return size;
+    size = utf16_decode(&units, *head, NOC_MIN(size, PROBED), decoded);
+    *head = decoded;
+    return size;
+}
+
 /* What the columns of a table's first line are, and how many; 0 if it is none. Probes take no memory, so that none is
  * refused. */
 static size_t probe_columns(const char *head, size_t size, bool has[LAMP_FIELD_TOTAL]) {
+    char decoded[PROBED * 3 / 2 + 6];
+    size = decode_head(&head, size, decoded);
     if (size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3)) {
         head += 3;
         size -= 3;
@@ -189,7 +83,7 @@ static size_t probe_columns(const char *head, size_t size, bool has[LAMP_FIELD_T
     size_t line = 0;
     while (line < size && head[line] && head[line] != '\n')
         line++;
-    char separator = find_separator(head, size);
+    char separator = csv_separator(head, size);
     if (!separator || (line < size && !head[line]) || *head == '{' || *head == '<')
         return 0;
     size_t count = 0;
@@ -211,6 +105,8 @@ bool lamp_csv_probe(const char *head, size_t size) {
 
 /* Text in lines, of which the first is cut by a separator. */
 bool lamp_csv_probe_table(const char *head, size_t size) {
+    char decoded[PROBED * 3 / 2 + 6];
+    size = decode_head(&head, size, decoded);
     for (size_t i = 0; i < size; i++)
         if ((unsigned char)head[i] < ' ' && !strchr("\t\r\n", head[i]))
             return false;
@@ -245,13 +141,16 @@ static bool read_wkt(const char *text, double *x, double *y) {
 
 static bool read_place(const csv *c, const columns *cols, double *x, double *y) {
     *x = *y = NAN;
+    if (cols->lon < 0 && cols->lat_lon >= 0 && lamp_coordinates(csv_field(c, (size_t)cols->lat_lon), y, x))
+        return true;
     if (cols->lon >= 0 && cols->lat >= 0)
-        return lamp_coordinate(field(c, (size_t)cols->lon), x) && lamp_coordinate(field(c, (size_t)cols->lat), y);
+        return lamp_coordinate(csv_field(c, (size_t)cols->lon), x) &&
+               lamp_coordinate(csv_field(c, (size_t)cols->lat), y);
     if (cols->lat_lon >= 0)
-        return two_numbers(field(c, (size_t)cols->lat_lon), y, x);
+        return two_numbers(csv_field(c, (size_t)cols->lat_lon), y, x);
     if (cols->wkt >= 0)
-        return read_wkt(field(c, (size_t)cols->wkt), x, y);
-    return lamp_coordinate(field(c, (size_t)cols->x), x) && lamp_coordinate(field(c, (size_t)cols->y), y);
+        return read_wkt(csv_field(c, (size_t)cols->wkt), x, y);
+    return lamp_coordinate(csv_field(c, (size_t)cols->x), x) && lamp_coordinate(csv_field(c, (size_t)cols->y), y);
 }
 
 static noc_status no_place(csv *c, const columns *cols) {
@@ -265,34 +164,48 @@ static noc_status no_place(csv *c, const columns *cols) {
                      noc_stream_name(c->stream), c->line, names, i < cols->count ? ", ..." : "");
 }
 
+/* A column is called as the header has it, or by its number where the user calls it so ("#2"). To be freed. */
+static char *column_name(const csv *c, const columns *cols, size_t i) {
+    return lamp_keys_number(cols->keys, i + 1) ? noc_format("#%zu", i + 1) : noc_strdup(csv_field(c, i));
+}
+
+/* A decimal number, one of metres, or one with signs: no name of a column, as 1, 2, 3 may be. */
+static bool is_place(const char *text) {
+    double value;
+    return lamp_coordinate(text, &value) && (strpbrk(text, ".,'\xb0\xba") || fabs(value) >= 1000);
+}
+
+/* Is the header a row, by what the user says of its columns? */
+static bool is_row(const csv *c, const columns *cols) {
+    double a, b;
+    int x = cols->lon >= 0 ? cols->lon : cols->x, y = cols->lat >= 0 ? cols->lat : cols->y;
+    if (x >= 0 && y >= 0)
+        return lamp_coordinate(csv_field(c, (size_t)x), &a) && lamp_coordinate(csv_field(c, (size_t)y), &b) &&
+               (is_place(csv_field(c, (size_t)x)) || is_place(csv_field(c, (size_t)y)));
+    if (cols->wkt >= 0)
+        return read_wkt(csv_field(c, (size_t)cols->wkt), &a, &b);
+    return cols->lat_lon >= 0 && two_numbers(csv_field(c, (size_t)cols->lat_lon), &a, &b);
+}
+
 /* Opens the table: header read, the next record is the first row. */
 static noc_status read_header(csv *c, columns *cols) {
-    noc_status status = noc_stream_rewind(c->stream);
+    noc_status status = csv_start(c);
     if (status)
         return status;
-    c->pos = c->len = 0;
-    c->next_line = 1;
-    status = noc_stream_read(c->stream, c->chunk, sizeof(c->chunk), &c->len);
-    if (status)
-        return status;
-    if (c->len >= 3 && !memcmp(c->chunk, "\xef\xbb\xbf", 3))
-        c->pos = 3;
-    c->separator = find_separator(c->chunk + c->pos, c->len - c->pos);
-    for (int quoted = 0; quoted < 2; quoted++) {
-        memset(c->special[quoted], 0, sizeof(c->special[quoted]));
-        c->special[quoted][0] = c->special[quoted]['\n'] = c->special[quoted]['"'] = true;
-    }
-    c->special[0][(unsigned char)c->separator] = true;
-    status = read_record(c);
+    status = csv_read(c);
+    c->again = cols->headless;
     if (status || cols->count)
         return status;
     cols->names = noc_calloc(c->start.len + 1, sizeof(*cols->names));
     for (; cols->names && cols->count < c->start.len; cols->count++)
-        if (!(cols->names[cols->count] = noc_strdup(field(c, cols->count))))
+        if (!(cols->names[cols->count] = column_name(c, cols, cols->count)))
             break;
     if (!cols->names || cols->count < c->start.len)
         return no_memory(c);
     understand(cols);
+    cols->headless = c->again = is_row(c, cols);
+    if (cols->headless)
+        noc_info(c->log, "%s: it has no header: its first line is a row", noc_stream_name(c->stream));
     bool has[LAMP_FIELD_TOTAL] = { false };
     for (size_t i = 0; i < cols->count; i++)
         has[lamp_keys_meaning(cols->keys, cols->names[i]).field] = true;
@@ -305,7 +218,7 @@ static noc_status read_header(csv *c, columns *cols) {
 static noc_status looks_like_degrees(csv *c, columns *cols, geo_crs *given, bool *degrees) {
     size_t inside = 0, outside = 0;
     noc_status status = NOC_OK;
-    while (!outside && !(status = read_record(c)) && c->start.len) {
+    while (!outside && !(status = csv_read(c)) && c->start.len) {
         double x, y;
         if (c->start.len != cols->count || !read_place(c, cols, &x, &y))
             continue;
@@ -340,14 +253,14 @@ static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_im
 
 /* The present record as tags, if it fits the header; false after counting why not. */
 static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *row, lamp_tag *tags) {
-    if (c->start.len == 1 && !*field(c, 0))
+    if (c->start.len == 1 && !*csv_field(c, 0))
         return false; /* an empty line */
     if (c->start.len != cols->count) {
         geo_issue(w->sink->issues, GEO_SKIPPED, "row with too few or too many columns", row);
         return false;
     }
     for (size_t i = 0; i < cols->count; i++)
-        tags[i].value = field(c, i);
+        tags[i].value = csv_field(c, i);
     return true;
 }
 
@@ -378,9 +291,9 @@ static noc_status find_decimal_sign(csv *c, columns *cols) {
     if (!tags)
         return no_memory(c);
     noc_status status = NOC_OK;
-    for (size_t row = 0; row < ROWS && !(status = read_record(c)) && c->start.len; row++)
+    for (size_t row = 0; row < ROWS && !(status = csv_read(c)) && c->start.len; row++)
         for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++) {
-            tags[i].value = field(c, i);
+            tags[i].value = csv_field(c, i);
             lamp_keys_weigh(cols->keys, &tags[i]);
         }
     free(tags);
@@ -393,9 +306,9 @@ static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
     if (!tags)
         return no_memory(c);
     noc_status status = NOC_OK;
-    while (!status && !(status = read_record(c)) && c->start.len) {
+    while (!status && !(status = csv_read(c)) && c->start.len) {
         for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++)
-            tags[i].value = field(c, i);
+            tags[i].value = csv_field(c, i);
         if (c->start.len == cols->count && !lamp_kinds_count(kinds, tags, cols->count))
             status = no_memory(c);
     }
@@ -404,20 +317,37 @@ static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
     return status ? status : read_header(c, cols);
 }
 
-static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
+/* Columns that places were read from. */
+static void note_placed(const columns *cols) {
+    bool degrees = cols->lon >= 0 && cols->lat >= 0, pair = cols->lat_lon >= 0, wkt = cols->wkt >= 0;
+    const int used[] = { degrees ? cols->lon
+                         : pair  ? cols->lat_lon
+                         : wkt   ? cols->wkt
+                                 : cols->x,
+                         degrees ? cols->lat
+                         : pair  ? cols->lat_lon
+                         : wkt   ? cols->wkt
+                                 : cols->y };
+    for (size_t i = 0; i < NOC_COUNT(used) && cols->placed; i++)
+        lamp_keys_placed(cols->keys, cols->names[used[i]]);
+}
+
+static noc_status read_rows(csv *c, columns *cols, lamp_writer *w) {
     lamp_tag *tags = column_tags(cols);
     if (!tags)
         return no_memory(c);
     noc_status status;
-    while (!(status = read_record(c)) && c->start.len) {
+    while (!(status = csv_read(c)) && c->start.len) {
         char row[32];
         name_row(row, c->line);
         if (!row_tags(c, cols, w, row, tags))
             continue;
         double xyz[3];
-        if (!read_place(c, cols, &xyz[0], &xyz[1]))
+        bool placed = read_place(c, cols, &xyz[0], &xyz[1]);
+        cols->placed = cols->placed || placed;
+        if (!placed)
             xyz[0] = xyz[1] = NAN;
-        if (cols->z < 0 || !lamp_coordinate(field(c, (size_t)cols->z), &xyz[2]))
+        if (cols->z < 0 || !lamp_coordinate(csv_field(c, (size_t)cols->z), &xyz[2]))
             xyz[2] = NAN;
         xyz[2] *= cols->z_scale;
         status = lamp_writer_point(w, tags, cols->count, row, xyz);
@@ -428,6 +358,7 @@ static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
             break;
     }
     free(tags);
+    note_placed(cols);
     return status;
 }
 
@@ -435,11 +366,11 @@ static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
 static noc_status read_track_rows(csv *c, const columns *cols, geo_sink *sink, track_rows *rows) {
     const track_columns of = track_columns_of((const char *const *)cols->names, cols->count);
     noc_status status;
-    while (!(status = read_record(c)) && c->start.len) {
+    while (!(status = csv_read(c)) && c->start.len) {
         char row[32];
         double x, y;
         name_row(row, c->line);
-        if (c->start.len == 1 && !*field(c, 0))
+        if (c->start.len == 1 && !*csv_field(c, 0))
             continue;
         if (c->start.len != cols->count) {
             geo_issue(sink->issues, GEO_SKIPPED, "row with too few or too many columns", row);
@@ -449,8 +380,8 @@ static noc_status read_track_rows(csv *c, const columns *cols, geo_sink *sink, t
             geo_issue(sink->issues, GEO_SKIPPED, "point of a track without a place", row);
             continue;
         }
-        const char *track = of.track >= 0 ? field(c, (size_t)of.track) : "";
-        if (!track_rows_add(rows, track, x, y, of.time >= 0 ? track_time(field(c, (size_t)of.time)) : NAN))
+        const char *track = of.track >= 0 ? csv_field(c, (size_t)of.track) : "";
+        if (!track_rows_add(rows, track, x, y, of.time >= 0 ? track_time(csv_field(c, (size_t)of.time)) : NAN))
             return no_memory(c);
         size_t count = rows->rows.len;
         if (count % 4096)
@@ -520,8 +451,6 @@ noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, ge
         status = lamp_writer_end(&w);
     lamp_writer_free(&w);
     free_columns(&cols);
-    array_free(&c->text);
-    array_free(&c->start);
-    free(c);
+    csv_free(c);
     return status;
 }

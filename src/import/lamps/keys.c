@@ -200,6 +200,7 @@ typedef struct key {
     char *example;
     const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
     bool tells;          /* what is a lamp */
+    bool placed;         /* places were read from it */
     bool asked;          /* by conditions: */
     uint64_t conditions[GEO_CONDITIONS / 64];
     bool noted; /* belongs into the table of columns; the others were only asked for */
@@ -444,6 +445,28 @@ void lamp_keys_tell(lamp_keys *keys, const char *name) {
         k->tells = true;
 }
 
+void lamp_keys_placed(lamp_keys *keys, const char *name) {
+    key *k = get(keys, name);
+    if (k)
+        k->placed = true;
+}
+
+bool lamp_keys_number(const lamp_keys *keys, size_t number) {
+    char name[24];
+    noc_snprintf(name, sizeof(name), "#%zu", number);
+    bool named = false;
+    for (size_t i = 0; i < keys->maps.len; i++)
+        named = named || !strcmp(keys->maps.data[i].column, name);
+    return named;
+}
+
+/* What a column was read as: one of places only where any was read. */
+static const char *field_read(const key *k) {
+    bool kind = k->tells || (!k->meaning.field && (lamp_key_tells(k->name) || k->meaning.asks == LAMP_ASKS_ALONE));
+    bool place = k->meaning.field >= LAMP_FIELD_LON && k->meaning.field <= LAMP_FIELD_LAT_LON;
+    return kind ? "kind" : place && !k->placed ? "" : field_name(k->meaning.field);
+}
+
 static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place) {
     for (size_t i = 0; i < keys->keys.len; i++) {
         const key *k = &keys->keys.data[i];
@@ -469,9 +492,8 @@ noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, 
         const key *k = &keys->keys.data[i];
         if (!k->noted)
             continue;
-        bool kind = k->tells || (!k->meaning.field && (lamp_key_tells(k->name) || k->meaning.asks == LAMP_ASKS_ALONE));
         columns[n++] = (geo_column){ .name = k->name,
-                                     .field = kind ? "kind" : field_name(k->meaning.field),
+                                     .field = field_read(k),
                                      .unit = k->meaning.unit,
                                      .example = k->example ? k->example : "",
                                      .values = k->values,

@@ -127,6 +127,10 @@ lamp_model lamp_keys_model(lamp_keys *keys, const char *text, bool watts_column)
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 /* The values of this key say what is a lamp: its field is "kind". */
 void lamp_keys_tell(lamp_keys *keys, const char *name);
+/* Columns of places are read as such only where this is said of them: a place was read from it. */
+void lamp_keys_placed(lamp_keys *keys, const char *name);
+/* Does the user name a column by that number, from 1 on ("#2")? */
+bool lamp_keys_number(const lamp_keys *keys, size_t number);
 /* Hands the columns noted so far, in the order met, to the sink. */
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) NOC_MUST_USE;
 
@@ -309,8 +313,11 @@ bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char 
 bool lamp_direction(const char *text, double *degrees);
 /* A list of them ("45;225", "N/S"): how many there are, GEO_HEADINGS at most; 0: it is not understood. */
 int lamp_directions(const char *text, char decimal, float degrees[GEO_HEADINGS]);
-/* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W". */
+/* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W", "7 26.34 E", degrees, minutes and
+ * seconds with their signs (coordinate.c). */
 bool lamp_coordinate(const char *text, double *value);
+/* Two of them that have degree signs, minutes or hemispheres, latitude first unless they say otherwise. */
+bool lamp_coordinates(const char *text, double *lat, double *lon);
 bool lamp_blank(const char *text); /* NULL, "", "N/A", "-", "null", "none", "unknown" */
 /* sRGB "#rrggbb" or "#rgb" as linear Rec.709. */
 bool lamp_hex_colour(const char *text, float rgb[3]);

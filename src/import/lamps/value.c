@@ -232,30 +232,6 @@ int lamp_directions(const char *text, char decimal, float degrees[GEO_HEADINGS])
     return 0;
 }
 
-bool lamp_coordinate(const char *text, double *value) {
-    if (!text)
-        return false;
-    const char *p = skip_blanks(text);
-    bool negative = *p == '-';
-    p = lamp_scan_number(p + (*p == '-' || *p == '+'), false, 0, value);
-    if (!p) /* exponents and the like */
-        return noc_parse_double(text, value);
-    p = skip_blanks(p);
-    if (*p == 'e' || *p == 'E') {
-        if (isdigit((unsigned char)p[1]) || ((p[1] == '-' || p[1] == '+') && isdigit((unsigned char)p[2])))
-            return noc_parse_double(text, value);
-    }
-    if ((unsigned char)*p == 0xc2 && (unsigned char)p[1] == 0xb0) /* degree sign */
-        p = skip_blanks(p + 2);
-    bool flip = *p == 'S' || *p == 'W';
-    if (*p && strchr("NSEW", *p))
-        p = skip_blanks(p + 1);
-    if (*p && *p != '\r')
-        return false;
-    *value = negative != flip ? -*value : *value;
-    return true;
-}
-
 static float srgb_to_linear(int v) {
     double x = v / 255.0;
     return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));

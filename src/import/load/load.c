@@ -287,7 +287,8 @@ static bool column_there(void *ctx, const char *name) {
 static noc_status check_one_column(importer *im, const noc_report_file *file) {
     for (size_t i = 0; i < file->column_count; i++)
         for (size_t k = 0; k < i && file->columns[i].mapped; k++)
-            if (file->columns[k].mapped && !strcmp(file->columns[i].field, file->columns[k].field))
+            if (file->columns[k].mapped && *file->columns[k].field &&
+                !strcmp(file->columns[i].field, file->columns[k].field))
                 return noc_error(im->log, NOC_ERR_ARGUMENT,
                                  "%s: lamp-columns: both \"%.60s\" and \"%.60s\" are mapped to %s: leave one out",
                                  file->path, file->columns[k].name, file->columns[i].name, file->columns[i].field);
@@ -521,6 +522,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!built)
         number_panes(&im);
     for (size_t i = 0; i < im.input_count; i++) {
+        if (inspect)
+            im.inputs[i].file.lamps_dropped = im.inputs[i].lamps_lost;
         if (im.inputs[i].started && !report_add(im.report, &im.inputs[i].file, im.inputs[i].issues) && !status)
             status = noc_no_memory(scene->log, im.inputs[i].path);
         geo_issues_destroy(im.inputs[i].issues);
