@@ -94,17 +94,20 @@ typedef struct noc_luminaire_rule {
     double height;        /* m, of the light above the ground */
     int heads;            /* on a pole */
     noc_lamp_shape shape;
-    double radius;            /* m, of a sphere or disc */
-    double tilt;              /* degrees that the axis is turned from straight down, to where the lamp faces */
-    double arm;               /* m, of heads on a pole, from its axis */
-    const char *profile;      /* built-in (noc_profile_builtin_name), an IES or EULUMDAT file, or "none" */
+    double radius;       /* m, of a sphere or disc */
+    double tilt;         /* degrees that the axis is turned from straight down, to where the lamp faces */
+    double arm;          /* m, of heads on a pole, from its axis; never so little that its light were in the pole */
+    double turn;         /* degrees that the profile is turned about its axis, from where its C angle of the street
+                            (noc_profile_info.street) faces the street, counter-clockwise as seen from above */
+    const char *profile; /* built-in (noc_profile_builtin_name), an IES or EULUMDAT file, or "none" */
     const char *profile_base; /* folder, with a slash at its end or "", that such a file's name begins at, and that it
                                  must lie below unless noc_import_params.allow_outside; NULL: it lies anywhere */
 } noc_luminaire_rule;
 
 #define NOC_LUMINAIRE_DEFAULTS(set)                                                                                    \
     set(watts, (double)NAN) set(lumens, (double)NAN) set(efficacy, (double)NAN) set(kelvin, (double)NAN)               \
-        set(height, (double)NAN) set(radius, (double)NAN) set(tilt, (double)NAN) set(arm, (double)NAN)
+        set(height, (double)NAN) set(radius, (double)NAN) set(tilt, (double)NAN) set(arm, (double)NAN)                 \
+            set(turn, (double)NAN)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_luminaire_rule, noc_luminaire_default_rule, NOC_LUMINAIRE_DEFAULTS)
 #else

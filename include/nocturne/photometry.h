@@ -39,12 +39,13 @@ typedef struct noc_profile_info {
     int planes, gammas;  /* angles as the file has them */
     double c_min, c_max; /* of the file */
     double gamma_min, gamma_max;
-    double street; /* the C angle that looks across the street: 0 in IES files, 90 in those of C 90-270 and EULUMDAT, or
-                    * the one across from it where more light goes there */
-    double watts;  /* 0: not told */
-    double kelvin; /* colour temperature by its colour appearance or its labels ("LED 4000K"); 0: not told */
-    int lamp_sets; /* EULUMDAT: the first one counts */
-    double size[3];            /* luminous opening: width, length, height, m; negative as in IES files: round */
+    double street;  /* the C angle that looks across the street, by the light itself: the end that more of it goes to;
+                     * where ends are alike, across from where it reaches farther; else 0 in IES files, 90 in EULUMDAT;
+                     * of types A and B 90 */
+    double watts;   /* 0: not told */
+    double kelvin;  /* colour temperature by its colour appearance or its labels ("LED 4000K"); 0: not told */
+    int lamp_sets;  /* EULUMDAT: the first one counts */
+    double size[3]; /* luminous opening: width, length, height, m; negative as in IES files: round */
     noc_profile_zones forward; /* the half of it around `street` */
     noc_profile_zones back;    /* the other half */
     double up_low, up_high;    /* 90 to 100, 100 to 180 degrees */

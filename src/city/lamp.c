@@ -317,7 +317,7 @@ static bool add_light(const builder *b, const double position[3], const double d
     memcpy(light.direction, direction, sizeof(light.direction));
     memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
     const double street[3] = { towards[0], towards[1], 0 };
-    if (f->profiled && !city_profile_give(b->params->profiles, profile_kind(b), f->ruled.profile, street, &light))
+    if (f->profiled && !city_profile_give(b->params->profiles, profile_kind(b), &f->ruled, street, &light))
         return false;
     int index = noc_scene_add_light(b->scene, &light);
     if (index >= 0 && b->params->told)
@@ -325,18 +325,23 @@ static bool add_light(const builder *b, const double position[3], const double d
     return index >= 0;
 }
 
+static double foot_radius(const fitting *f) { return NOC_CLAMP(.045 + .006 * f->height, .03, .2); }
+
+static double top_radius(const fitting *f) { return NOC_MIN(foot_radius(f) * .6, f->radius * .4); }
+
+/* How far a head that hangs beside the pole must be off its axis, so that no part of the light lies in the pole, nor
+ * over its foot, which is thicker. */
+static double least_reach(const fitting *f) { return f->radius + foot_radius(f) + .02; }
+
 /* How far a head is off the pole's axis. A single lantern sits on top. */
 static double reach(const builder *b) {
     const fitting *f = b->fitting;
     if (!b->pole)
         return f->heads > 1 ? .35 : 0;
-    if (isfinite(f->ruled.arm) && f->kind != FITTING_SPHERE)
-        return f->ruled.arm;
-    switch (f->kind) {
-    case FITTING_SPHERE: return f->heads > 1 ? f->radius + .25 : 0;
-    case FITTING_FLOOD: return .35;
-    default: return NOC_CLAMP(.15 * f->height, .6, 1.5);
-    }
+    if (f->kind == FITTING_SPHERE)
+        return f->heads > 1 ? f->radius + .25 : 0;
+    double usual = f->kind == FITTING_FLOOD ? .35 : NOC_CLAMP(.15 * f->height, .6, 1.5);
+    return fmax(isfinite(f->ruled.arm) ? f->ruled.arm : usual, least_reach(f));
 }
 
 /* The axis of a head that faces (dx, dy). */
@@ -444,10 +449,8 @@ static void add_pole(builder *b) {
         top -= f->heads > 1 ? f->radius + .22 : f->radius + .005; /* under the globe, or above the roots of its arms */
     else
         top += .08;
-    double foot_radius = NOC_CLAMP(.045 + .006 * f->height, .03, .2),
-           top_radius = NOC_MIN(foot_radius * .6, f->radius * .4);
     if (top > foot[2] + .12)
-        shape_pole(&b->shape, foot, top, foot_radius, top_radius);
+        shape_pole(&b->shape, foot, top, foot_radius(f), top_radius(f));
 }
 
 /* A lamp whose body is modelled: its lights alone, where the body has them. */

@@ -35,9 +35,10 @@ typedef enum city_profile_kind {
     CITY_PROFILES
 } city_profile_kind;
 
-/* Gives a light that profile, or the one that a rule says (geo_fitting.profile, 0: none does), with the way to the
- * street; false after reporting. */
-bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light);
+/* Gives a light that profile, or the one that rules say, with the way to the street, turned as rules say; false after
+ * reporting. */
+bool city_profile_give(city_profiles *p, city_profile_kind kind, const geo_fitting *ruled, const double street[3],
+                       noc_light *light);
 
 /* Its name; of files, the file's. "" where profiles is NULL. */
 const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled);

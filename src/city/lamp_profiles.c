@@ -2,6 +2,7 @@
  * scene when the first lamp wants them. */
 #include "city/lamp.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct kept_profile {
@@ -120,8 +121,20 @@ const char *city_profile_name(const city_profiles *p, city_profile_kind kind, in
     return p ? name_of(p, i) : "";
 }
 
-bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light) {
-    size_t i = chosen(p, kind, ruled);
+/* Turns c0 about the axis, counter-clockwise as seen from behind it: the way that C goes. */
+static void turn(double degrees, const double axis[3], double c0[3]) {
+    double angle = degrees * M_PI / 180, length = 0, c90[3];
+    for (int k = 0; k < 3; k++)
+        length += axis[k] * axis[k];
+    for (int k = 0; k < 3; k++) /* c0 x axis */
+        c90[k] = (c0[(k + 1) % 3] * axis[(k + 2) % 3] - c0[(k + 2) % 3] * axis[(k + 1) % 3]) / sqrt(length);
+    for (int k = 0; k < 3; k++)
+        c0[k] = cos(angle) * c0[k] + sin(angle) * c90[k];
+}
+
+bool city_profile_give(city_profiles *p, city_profile_kind kind, const geo_fitting *ruled, const double street[3],
+                       noc_light *light) {
+    size_t i = chosen(p, kind, ruled->profile);
     kept_profile *k = &p->of.data[i];
     if (!k->profile && noc_profile_builtin(NULL, name_of(p, i), &k->profile)) {
         noc_scene_out_of_memory(p->scene); /* there is one of each name */
@@ -134,6 +147,8 @@ bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, cons
     k->lights++;
     light->profile = k->index;
     noc_profile_orient(k->profile, light->direction, street, light->c0);
+    if (isfinite(ruled->turn))
+        turn(ruled->turn, light->direction, light->c0);
     return true;
 }
 

@@ -107,6 +107,7 @@ enum { GEO_CONDITIONS = 256 }; /* of rules and groups, on tags */
 typedef struct geo_fitting {
     noc_lamp_shape shape;
     double efficacy, radius, tilt, arm; /* lm/W, m, degrees, m; NaN: nothing */
+    double turn;                        /* degrees that a profile is turned about its axis; NaN: nothing */
     int profile;                        /* of city_profiles; 0: by its kind; GEO_NO_PROFILE: none */
     int group;                          /* of the scene; 0: none */
     noc_lamp_flux flux;
@@ -118,6 +119,7 @@ typedef struct geo_fitting {
                     .radius = NAN,                                                                                     \
                     .tilt = NAN,                                                                                       \
                     .arm = NAN,                                                                                        \
+                    .turn = NAN,                                                                                       \
                     .file_lumens = NAN,                                                                                \
                     .file_watts = NAN,                                                                                 \
                     .file_kelvin = NAN })

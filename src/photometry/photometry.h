@@ -33,8 +33,9 @@ noc_profile *photometry_new(noc_log *log, const char *name, const char *format);
 noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, const char *name, int line);
 /* Multiplies the intensities of a profile of type C, and what info has of them, by a positive factor. */
 void photometry_scale(noc_profile *p, double factor);
-/* Sets info's street: C angle c, or the one across from it where more light goes there below the horizon. Files of
- * luminaires that are symmetric across the street differ in which end of it they begin at. */
+/* Sets info's street to C 0, 90, 180 or 270 by the light itself, so that it is the same whatever the file's kind says
+ * of C 0: of the two ends that more and less light goes to below the horizon, the brighter one; where opposite ends are
+ * alike, across from where light reaches farther. usual: 0 or 90, the kind's own, where nothing tells them apart. */
 void photometry_face_street(noc_profile *p, double c);
 /* flux_error and what is to be said of it; info's lumens, lamp_lumens and lor are set. */
 void photometry_judge(noc_profile *p, noc_log *log, const char *name);

@@ -237,9 +237,30 @@ static const char *angle_fault(const photometry_grid *g) {
                : NULL;
 }
 
-void photometry_face_street(noc_profile *p, double c) {
-    double front = noc_profile_flux(p, 0, 90, c), back = noc_profile_flux(p, 0, 90, c + 180);
-    p->info.street = back > 1.02 * front ? fmod(c + 180, 360) : c;
+/* Of light below the horizon: how much more goes along C 0 and 180 than along C 90 and 270, as a share. */
+static double elongation(const noc_profile *p) {
+    double sum = 0, along = 0;
+    for (double c = 0; c < 360; c += 5)
+        for (double gamma = 2.5; gamma < 90; gamma += 5) {
+            double part = noc_profile_intensity(p, c, gamma) * sin(gamma * M_PI / 180);
+            sum += part;
+            along += part * cos(2 * c * M_PI / 180);
+        }
+    return sum > 0 ? along / sum : 0;
+}
+
+#define CLEARLY .01 /* share of the light below the horizon */
+
+void photometry_face_street(noc_profile *p, double usual) {
+    double ahead = noc_profile_flux(p, 0, 90, 0) - noc_profile_flux(p, 0, 90, 180);
+    double aside = noc_profile_flux(p, 0, 90, 90) - noc_profile_flux(p, 0, 90, 270);
+    double clearly = CLEARLY * noc_profile_flux(p, 0, 90, NAN);
+    if (fmax(fabs(ahead), fabs(aside)) > clearly) {
+        p->info.street = fabs(ahead) > fabs(aside) ? (ahead > 0 ? 0 : 180) : aside > 0 ? 90 : 270;
+        return;
+    }
+    double longer = elongation(p);
+    p->info.street = fabs(longer) > CLEARLY ? (longer > 0 ? 90 : 0) : usual;
 }
 
 /* Of the file's own angles. */
@@ -289,7 +310,9 @@ noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, con
     info->c_max = g->c.data[g->c.len - 1];
     info->gamma_min = g->gamma.data[0];
     info->gamma_max = g->gamma.data[g->gamma.len - 1];
-    photometry_face_street(p, g->type != 'C' || s == HALF_ACROSS ? 90 : 0);
+    p->info.street = 90; /* up, as a floodlight was measured */
+    if (g->type == 'C')
+        photometry_face_street(p, s == HALF_ACROSS ? 90 : 0);
     if (g->type != 'C') {
         p->own = *g;
         *g = (photometry_grid){ .type = g->type };

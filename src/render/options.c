@@ -215,6 +215,8 @@ static const noc_option luminaire_options[] = {
     REAL(P, radius, "radius", "Luminaires", 0.005, 2, "m", "of a sphere or disc"),
     REAL(P, tilt, "tilt", "Luminaires", 0, 120, "degrees", "of its axis from straight down, to where it faces"),
     REAL(P, arm, "arm", "Luminaires", 0, 10, "m", "of heads, from the pole's axis"),
+    REAL(P, turn, "turn", "Luminaires", -360, 360, "degrees",
+         "of its profile, counter-clockwise, from facing the street"),
     TEXT(P, profile, "profile", "Luminaires", "PROFILE", "built-in one, IES or EULUMDAT file, or none"),
     END,
 };

@@ -340,6 +340,28 @@ static void test_what_files_give(void **state) {
     write_file("road.ies", profile);
 }
 
+/* C 0 as seen from above, counter-clockwise, by as many degrees as a rule says. */
+static void test_turned_profiles(void **state) {
+    (void)state;
+    static const double turns[] = { NAN, 0, 90, -30 };
+    double first[2] = { 0 };
+    for (size_t i = 0; i < 4; i++) {
+        noc_luminaire_rule rule = RULE(.profile = "cobra-head", .turn = turns[i]);
+        noc_import_params params = noc_import_default_params();
+        params.luminaires = &rule;
+        params.luminaire_count = 1;
+        loaded l = load_file("lamps.csv", params);
+        assert_int_equal(l.status, NOC_OK);
+        noc_light_info a = light_of(&l, "a");
+        const double *c0 = a.light.c0, angle = i > 1 ? turns[i] * M_PI / 180 : 0;
+        if (i == 0)
+            memcpy(first, c0, sizeof(first));
+        assert_true(fabs(c0[0] - (cos(angle) * first[0] - sin(angle) * first[1])) < 1e-6);
+        assert_true(fabs(c0[1] - (sin(angle) * first[0] + cos(angle) * first[1])) < 1e-6 && fabs(c0[2]) < 1e-6);
+        unload(&l);
+    }
+}
+
 /* What cannot hang over a street. */
 static void test_no_street_light(void **state) {
     (void)state;
@@ -509,6 +531,7 @@ int main(void) {
         cmocka_unit_test(test_profiles_of_rules),
         cmocka_unit_test(test_what_files_give),
         cmocka_unit_test(test_no_street_light),
+        cmocka_unit_test(test_turned_profiles),
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_what_is_wrong),
         cmocka_unit_test(test_they_are_told_of_a_file),

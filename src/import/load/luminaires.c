@@ -198,6 +198,7 @@ static void apply(const noc_luminaire_rule *r, int profile, const geo_lamp *told
     f->radius = isfinite(r->radius) ? r->radius : f->radius;
     f->tilt = isfinite(r->tilt) ? r->tilt : f->tilt;
     f->arm = isfinite(r->arm) ? r->arm : f->arm;
+    f->turn = isfinite(r->turn) ? r->turn : f->turn;
     f->profile = profile ? profile : f->profile;
 }
 
