@@ -200,8 +200,8 @@ NOC_API const char *noc_lamp_source_name(noc_lamp_source source); /* "unknown", 
 /* A column of a table, an attribute or a tag, and what it was read as. */
 typedef struct noc_report_column {
     const char *name;    /* as in the file */
-    const char *field;   /* "height", "watts", ...: a name of noc_import_params.lamp_columns, or "kind" where its
-                            values say what is a lamp; "" where it is not used */
+    const char *field;   /* "height", "watts", ...: a name of noc_import_params.lamp_columns; "kind" where its values
+                            say what is a lamp, "description" where they say what lamp it is; "" where it is not used */
     const char *unit;    /* of values that name none: "m", "ft", "W", ...; "" where there is none */
     const char *example; /* the first value, cut short; "" where all are blank */
     size_t values;       /* that are not blank */

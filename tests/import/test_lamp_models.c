@@ -110,6 +110,9 @@ static void test_columns(void **state) {
             fail_msg("%s: source %d, %g W, %d heads", want[i].id, l->source, l->watts, l->count);
     }
     assert_int_equal(issue_count(&s, "not understood"), 0);
+    assert_string_equal(s.columns.data[5].name, "DESCR");
+    assert_string_equal(s.columns.data[5].field, "description");
+    assert_string_equal(s.columns.data[6].field, ""); /* PLANNED */
     lamp_sink_end(&s);
 }
 
@@ -144,6 +147,32 @@ static void test_by_value(void **state) {
                                        "1 x source of a lamp not understood: \"R\" (a8)\n"
                                        "2 x source of a lamp not understood: other values ()\n");
     lamp_sink_end(&s);
+    read_text(&s, "id,lon,lat,IS_STREETLIGHT\na,8,50,Yes\nb,8,50.1,maybe\nc,8,50.2,LED 40W\nd,8,50.3,?\n", NULL, false);
+    assert_int_equal(s.lamps.len, 3);
+    assert_string_equal(issues_of(&s), "1 x point that has no lamp by its own word (d)\n"
+                                       "1 x neither yes nor no to whether there is a lamp: \"maybe\" (b)\n");
+    lamp_sink_end(&s);
+}
+
+/* A table of nothing but descriptions is one of lamps where half of its rows have some. */
+static void test_described(void **state) {
+    lamp_sink s;
+    read_text(&s, "id,lon,lat,what\na,8,50,HPS 250W AERO\nb,8,50.1,\"LED, 38 WATT\"\nc,8,50.2,\nd,8,50.3,Sodium\n",
+              NULL, false);
+    assert_int_equal(s.lamps.len, 4);
+    assert_float_equal(lamp_by_id(&s, "a")->watts, 250, 0);
+    assert_int_equal(lamp_by_id(&s, "d")->source, GEO_SOURCE_SODIUM);
+    lamp_sink_end(&s);
+    static const char *const others[] = {
+        "id,lon,lat,what\na,8,50,HPS 250W AERO\nb,8,50.1,\nc,8,50.2,Fountain\nd,8,50.3,LED 38W\ne,8,50.4,Bench\n",
+        "id,lon,lat,what\na,8,50,Bench 120 W Main Street\nb,8,50.1,PL 36\n",
+    };
+    for (size_t i = 0; i < NOC_COUNT(others); i++) {
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps_text(&s, others[i], NULL), NOC_ERR_FORMAT);
+        assert_non_null(strstr(s.error, "nothing tells that"));
+        lamp_sink_end(&s);
+    }
 }
 
 static void test_directions(void **state) {
@@ -259,6 +288,7 @@ int main(void) {
         cmocka_unit_test(test_descriptions),
         cmocka_unit_test(test_columns),
         cmocka_unit_test(test_by_value),
+        cmocka_unit_test(test_described),
         cmocka_unit_test(test_directions),
         cmocka_unit_test(test_heads),
         cmocka_unit_test(test_yes_and_no),

@@ -160,7 +160,7 @@ static noc_status no_place(csv *c, const columns *cols) {
         n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%.40s", i ? ", " : "", cols->names[i]);
     return noc_error(c->log, NOC_ERR_FORMAT,
                      "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) in the header: it "
-                     "has %s%s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B",
+                     "has %s%s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B, by name or number (#1)",
                      noc_stream_name(c->stream), c->line, names, i < cols->count ? ", ..." : "");
 }
 
@@ -414,8 +414,8 @@ static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
     w->inventory = w->sink->named_lamps || cols->inventory || w->asked;
     if (!w->inventory && !cols->tags) {
         status = read_kinds(c, cols, &w->kinds);
-        w->inventory = w->kinds.any;
-        w->strange = !w->kinds.any;
+        w->inventory = w->kinds.any || w->kinds.models;
+        w->strange = !w->inventory;
     }
     return status;
 }

@@ -201,6 +201,7 @@ typedef struct key {
     const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
     bool tells;          /* what is a lamp */
     bool placed;         /* places were read from it */
+    bool described;      /* descriptions were, though it is called otherwise */
     bool asked;          /* by conditions: */
     uint64_t conditions[GEO_CONDITIONS / 64];
     bool noted; /* belongs into the table of columns; the others were only asked for */
@@ -451,6 +452,12 @@ void lamp_keys_placed(lamp_keys *keys, const char *name) {
         k->placed = true;
 }
 
+void lamp_keys_described(lamp_keys *keys, const lamp_tag *tag) {
+    key *k = keys ? get_tag(keys, tag) : NULL;
+    if (k)
+        k->described = true;
+}
+
 bool lamp_keys_number(const lamp_keys *keys, size_t number) {
     char name[24];
     noc_snprintf(name, sizeof(name), "#%zu", number);
@@ -462,9 +469,13 @@ bool lamp_keys_number(const lamp_keys *keys, size_t number) {
 
 /* What a column was read as: one of places only where any was read. */
 static const char *field_read(const key *k) {
-    bool kind = k->tells || (!k->meaning.field && (lamp_key_tells(k->name) || k->meaning.asks == LAMP_ASKS_ALONE));
-    bool place = k->meaning.field >= LAMP_FIELD_LON && k->meaning.field <= LAMP_FIELD_LAT_LON;
-    return kind ? "kind" : place && !k->placed ? "" : field_name(k->meaning.field);
+    const lamp_meaning *m = &k->meaning;
+    bool place = m->field >= LAMP_FIELD_LON && m->field <= LAMP_FIELD_LAT_LON;
+    if (k->tells || (!m->field && (lamp_key_tells(k->name) || m->asks == LAMP_ASKS_ALONE)))
+        return "kind";
+    if (!m->field && (m->role >= LAMP_ROLE_WHY_NOT || m->asks == LAMP_ASKS))
+        return "status";
+    return k->described ? "description" : place && !k->placed ? "" : field_name(m->field);
 }
 
 static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place) {

@@ -1,7 +1,8 @@
 /* Tables whose values, not whose columns, say that their rows are lamps: "Lichtmast mit Auslegerleuchte" in a column
  * called "bezeichnung". A column says what the rows are where at least half of its values name street lamps, or where
  * it is called like one that says such things ("type", "Objektart") and a value names a street lamp beyond doubt. So an
- * inn called "Zur Laterne" among other places stays an inn. */
+ * inn called "Zur Laterne" among other places stays an inn. Where half of the rows have a description with a source and
+ * its watts in one column ("HPS 250W"), all rows are lamps. */
 #include "import/lamps/tags.h"
 
 /* Values of such columns come again and again: what was found of some of them. */
@@ -12,6 +13,7 @@ struct lamp_kind {
     char *name;
     bool of_kinds;             /* called like a column of kinds */
     size_t given, words, sure; /* values; those with a word; those beyond doubt */
+    size_t models;             /* those that name a source and its watts: "HPS 250W AERO" */
     bool tells;
 };
 
@@ -138,21 +140,33 @@ static struct lamp_kind *find(const lamp_kinds *kinds, const char *name, size_t 
     return NULL;
 }
 
+enum { OF_MODEL = 3 };
+
+/* As lamp_object_word, or OF_MODEL. */
+static int ask_word(const char *text) {
+    int word = lamp_object_word(text);
+    if (word || !*(text + strcspn(text, "0123456789")))
+        return word;
+    const lamp_model m = lamp_model_of(text, false, 0);
+    return m.source != GEO_SOURCE_UNKNOWN && m.watts > 0 && m.clear && lamp_model_stands_alone(&m) ? OF_MODEL : 0;
+}
+
 static int word_of(struct lamp_kind *k, const char *text) {
     size_t n = strnlen(text, REMEMBERED_SIZE);
     if (!n || n == REMEMBERED_SIZE)
-        return lamp_object_word(text);
+        return ask_word(text);
     const unsigned char *u = (const unsigned char *)text;
     unsigned slot = (u[0] + 3u * u[n / 2] + 5u * u[n - 1] + 7u * (unsigned)n) % REMEMBERED;
     if (strcmp(k->remembered[slot], text)) {
         memcpy(k->remembered[slot], text, n + 1);
-        k->word[slot] = (signed char)lamp_object_word(text);
+        k->word[slot] = (signed char)ask_word(text);
     }
     return k->word[slot];
 }
 
 bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     enum { MOST = 4096 }; /* columns of a table */
+    kinds->rows++;
     for (size_t i = 0; i < count; i++) {
         struct lamp_kind *k = find(kinds, tags[i].key, i);
         if (!k && kinds->columns.len < MOST) {
@@ -167,8 +181,9 @@ bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
             continue;
         int word = word_of(k, tags[i].value);
         k->given++;
-        k->words += word > 0;
-        k->sure += word > 1;
+        k->words += word == 1 || word == 2;
+        k->sure += word == 2;
+        k->models += word == OF_MODEL;
     }
     return true;
 }
@@ -179,13 +194,15 @@ void lamp_kinds_decide(lamp_kinds *kinds) {
         k->tells = k->sure && (k->of_kinds || 2 * k->sure >= k->given);
         k->tells = k->tells || (k->of_kinds && k->words && 2 * k->words >= k->given);
         kinds->any |= k->tells;
+        kinds->models |= k->models > 1 && 2 * k->models >= kinds->rows;
     }
 }
 
 bool lamp_kinds_tell(const lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     for (size_t i = 0; i < count; i++) {
         struct lamp_kind *k = find(kinds, tags[i].key, i);
-        if (k && k->tells && tags[i].value && word_of(k, tags[i].value) > 0)
+        int word = k && k->tells && tags[i].value ? word_of(k, tags[i].value) : 0;
+        if (word == 1 || word == 2)
             return true;
     }
     return false;

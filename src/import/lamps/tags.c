@@ -190,11 +190,25 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
         if (!text || !*(text + strcspn(text, LETTERS)) || !lamp_tag_meaning(r->keys, &tags[i]).free_text)
             continue;
         const lamp_model model = lamp_keys_model(r->keys, text, false);
-        if (lamp_model_stands_alone(&model))
-            take_model(r, &model);
+        if (!lamp_model_stands_alone(&model))
+            continue;
+        take_model(r, &model);
+        lamp_keys_described(r->keys, &tags[i]);
     }
     if (strange && r->lamp->source == GEO_SOURCE_UNKNOWN)
         unread(r, "source of a lamp not understood", strange);
+}
+
+/* A column of yes and no that says neither, nor anything of a lamp, is told of: there is taken to be one. */
+static void read_doubts(const reading *r, const lamp_tag *tags, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (lamp_tag_meaning(r->keys, &tags[i]).asks < LAMP_ASKS || lamp_blank(tags[i].value) ||
+            lamp_yes_or_no(tags[i].value))
+            continue;
+        const lamp_model model = lamp_keys_model(r->keys, tags[i].value, false);
+        if (!says_something(tags[i].value, &model))
+            unread(r, "neither yes nor no to whether there is a lamp", tags[i].value);
+    }
 }
 
 static bool read_mount(reading *r, const char *text) {
@@ -278,6 +292,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                 strcmp(all[i].value, lamp->id) != 0)
                 lamp->ref = all[i].value;
     read_models(&r, all, n, ranks, tags, count);
+    read_doubts(&r, tags, count);
     if (all != few)
         free(all);
     lamp_keys_ask(keys, tags, count, lamp);

@@ -129,6 +129,8 @@ void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 void lamp_keys_tell(lamp_keys *keys, const char *name);
 /* Columns of places are read as such only where this is said of them: a place was read from it. */
 void lamp_keys_placed(lamp_keys *keys, const char *name);
+/* A description was read from a column that is called otherwise; keys may be NULL. */
+void lamp_keys_described(lamp_keys *keys, const lamp_tag *tag);
 /* Does the user name a column by that number, from 1 on ("#2")? */
 bool lamp_keys_number(const lamp_keys *keys, size_t number);
 /* Hands the columns noted so far, in the order met, to the sink. */
@@ -162,6 +164,8 @@ bool lamp_key_tells(const char *key);
 bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
 /* Does one of them say by yes and no whether a point is a street lamp (IS_STREETLIGHT)? */
 bool lamp_columns_ask(lamp_keys *keys, const char *const *names, size_t count);
+/* 1: yes, -1: no, in many languages, 0: neither. A number is how many. */
+int lamp_yes_or_no(const char *value);
 /* Do those columns of this row say yes, or name something other than no? */
 bool lamp_is_told(lamp_keys *keys, const lamp_tag *tags, size_t count);
 
@@ -183,7 +187,9 @@ int lamp_object_word(const char *text);
 /* Counts over all rows of a table which of its columns hold such words. */
 typedef struct lamp_kinds {
     NOC_ARRAY(struct lamp_kind) columns;
-    bool any; /* after lamp_kinds_decide: some column tells what the rows are */
+    size_t rows;
+    bool any;    /* after lamp_kinds_decide: some column tells what the rows are */
+    bool models; /* a column describes lamps: all rows are */
 } lamp_kinds;
 /* false: memory was refused */
 bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) NOC_MUST_USE;

@@ -75,8 +75,7 @@ static const char *after_lifecycle(const char *key) {
     return NULL;
 }
 
-/* 1: yes, -1: no, 0: neither. Numbers are how many. */
-static int yes_or_no(const char *value) {
+int lamp_yes_or_no(const char *value) {
     static const char *const yes[] = { "yes", "y",   "true", "t",  "ja", "j",     "oui",  "o",         "si",  "s",
                                        "sim", "ano", "tak",  "on", "x",  "kylla", "vrai", "verdadero", "vero" };
     static const char *const no[] = { "no", "n",   "false", "f",  "nein", "non",  "nee",   "nao",
@@ -95,7 +94,7 @@ static int yes_or_no(const char *value) {
     return 0;
 }
 
-static bool is_no(const char *value) { return yes_or_no(value) < 0; }
+static bool is_no(const char *value) { return lamp_yes_or_no(value) < 0; }
 
 static void makers_of(const char *key, lamp_meaning *m) {
     const char *rest = after_lifecycle(key);
@@ -234,7 +233,7 @@ static int says_lamp(const lamp_meaning *m, const char *v) {
     bool word = strlen(v) > 1 || strchr("NnYy", *v);
     return m->asks == LAMP_ASKS_NOT || (m->asks == LAMP_ASKS_WORDS && (!word || strpbrk(v, "0123456789")))
                ? 0
-               : yes_or_no(v);
+               : lamp_yes_or_no(v);
 }
 
 /* "No" is one for a column that the user names as status; of others codes of one letter and numbers say too little. */

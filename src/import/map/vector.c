@@ -352,8 +352,8 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
         w->inventory = m->format->kind != MAP_OSM;
     else if (!w->inventory && !tags) {
         status = read_kinds(m, layer);
-        w->inventory = w->kinds.any;
-        w->strange = !w->kinds.any;
+        w->inventory = w->kinds.any || w->kinds.models;
+        w->strange = !w->inventory;
     }
     return status;
 }
