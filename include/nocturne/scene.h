@@ -138,7 +138,7 @@ typedef struct noc_light {
     /* From noc_scene_add_profile, of points, spheres and discs; 0: none. Its axis is `direction`, its C 0 is c0, made
      * upright to that; 0,0,0: any. The shape softens shadows: intensity and distance are those of the place on a disc,
      * and of a sphere's centre. Seen itself it is as bright as a Lambertian one of its flux. */
-    int profile;
+    int profile; /* discs and spheres: what lies within 2.5 radii of the centre, as a housing, casts no shadow of it */
     double c0[3];
 } noc_light;
 

@@ -395,7 +395,7 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
         double side[3] = { -dy, dx, 0 }, back[3];
         for (int k = 0; k < 3; k++)
             back[k] = at[k] - .14 * axis[k];
-        shape_housing(&b->shape, face, axis, side, f->radius * 1.3, f->radius * 1.15, .13);
+        shape_housing(&b->shape, face, axis, side, f->radius * 1.3, f->radius * 1.15, fmin(.13, .87 * f->radius));
         if (root)
             shape_bar(&b->shape, root, back, .025);
         return add_light(b, lit, axis, street);
@@ -403,7 +403,7 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     double neck[3];
     for (int k = 0; k < 3; k++)
         neck[k] = at[k] - .3 * along[k] - .07 * axis[k];
-    shape_housing(&b->shape, face, axis, along, f->radius * 1.9, f->radius * 1.15, .12);
+    shape_housing(&b->shape, face, axis, along, f->radius * 1.9, f->radius * 1.15, fmin(.12, .8 * f->radius));
     if (root && off > .3)
         shape_bar(&b->shape, root, neck, .03);
     return add_light(b, lit, axis, street);

@@ -1,12 +1,15 @@
 /* Lamps: flux and colour in closed form, standing on the ground, shapes. */
 #include "lamp_scene.h"
 
-static double luminance(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
+#include "../core/no_profiles.h"
+#include "core/shadow.h"
+
+static double luminance_of(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
 
 /* Lumens that a light of the scene gives off. */
 static double flux(const noc_light_record *l) {
     double area = l->kind == NOC_LIGHT_SPHERE ? 4 * M_PI * l->radius * l->radius : M_PI * l->radius * l->radius;
-    return M_PI * luminance(l->e) * area;
+    return M_PI * luminance_of(l->e) * area;
 }
 
 static size_t issues_with(const geo_issues *issues, const char *text) {
@@ -42,13 +45,13 @@ static void test_kelvin(void **state) {
         chromaticity(rgb, xy);
         assert_float_equal(xy[0], table[i][1], .002);
         assert_float_equal(xy[1], table[i][2], .002);
-        assert_float_equal(luminance(rgb), 1, 1e-5);
+        assert_float_equal(luminance_of(rgb), 1, 1e-5);
     }
     for (double k = -1000; k < 1e6; k += 333) { /* anything gives a colour */
         float rgb[3];
         noc_kelvin_rgb(k, rgb);
         assert_true(rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0);
-        assert_float_equal(luminance(rgb), 1, 1e-4);
+        assert_float_equal(luminance_of(rgb), 1, 1e-4);
     }
 }
 
@@ -506,8 +509,46 @@ static void test_light_outside_its_pole(void **state) {
     }
 }
 
+/* A distribution holds its housing's shadow already: shadow rays from above end before the head of a light that has
+ * one. Without one the head blocks all or nearly all of them. The arm shades some, of a small head up to a tenth. */
+static void test_head_of_a_profile(void **state) {
+    static const noc_lamp_shape shapes[] = { NOC_LAMP_DISC, NOC_LAMP_SPHERE };
+    static const double radii[] = { .03, .15, .4 };
+    for (int i = 0; i < 2 * 2 * 3 * 2; i++) {
+        bool profiled = i % 2;
+        geo_fitting f = geo_no_fitting();
+        f.shape = shapes[i / 2 % 2];
+        f.radius = radii[i / 4 % 3];
+        geo_lamp lamp = lamp_at(0, 0);
+        lamp.type = i / 12 ? GEO_LAMP_FLOOD : GEO_LAMP_STREET;
+        lamp.direction = 90;
+        lamp.fitting = &f;
+        noc_scene *s = noc_scene_create(NULL);
+        noc_status status = NOC_OK;
+        city_lamp_params params = defaults;
+        params.profiles = profiled ? city_profiles_create(s, NULL, &status) : NULL;
+        assert_int_equal(status, NOC_OK);
+        assert_int_equal(city_add_lamp(s, &lamp, &params, false, NULL), 1);
+        light l = light_of_record(s->lights.data[0]);
+        int blocked = 0, rays = 2000;
+        for (int k = 0; k < rays; k++) {
+            double up = .4 + .6 * (k + .5) / rays, r = sqrt(1 - up * up), c = 2.399963 * k;
+            v3 n = V3((float)(r * cos(c)), (float)(r * sin(c)), (float)up);
+            segment way = shadow_segment(add3(l.p, mul3(n, 20)), mul3(n, -1), l, (float)fmod(.618034 * k, 1),
+                                         (float)fmod(.754878 * k, 1), 1e-4f);
+            blocked +=
+                is_blocked(s, (double[]){ way.o.x, way.o.y, way.o.z }, (double[]){ way.d.x, way.d.y, way.d.z }, 1);
+        }
+        if (profiled ? blocked > (f.radius < .1 ? rays / 10 : rays / 50) : blocked < rays / 4)
+            fail_msg("%d: radius %g, %s: %d of %d blocked", i, f.radius, profiled ? "profile" : "none", blocked, rays);
+        city_profiles_destroy(params.profiles);
+        noc_scene_destroy(s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_head_of_a_profile),
         cmocka_unit_test(test_light_outside_its_pole),
         cmocka_unit_test(test_kelvin),
         cmocka_unit_test(test_kelvin_back),
