@@ -86,7 +86,7 @@ static void test_run(void **state) {
             reached = end_refusal();
             if (status) {
                 if (status == NOC_ERR_FORMAT) /* a picture that is read has no other word for it */
-                    assert_non_null(strstr(refusing.first_error, "EXR"));
+                    assert_true(strstr(refusing.first_error, "EXR") || strstr(refusing.first_error, "no memory for"));
                 assert_refused(status == NOC_ERR_FORMAT ? NOC_ERR_MEMORY : status, "run");
                 assert_int_equal(work(spec, log, &rows), NOC_OK);
             } else {
