@@ -513,7 +513,7 @@ int cli_animate(render_job *job) {
     int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
     if (cli_is_failure(status)) {
         ending = CLI_FAILURE;
-        if (a.made)
+        if (a.made && a.kept_count + a.made < a.pictures)
             cli_error("stopped: %d of %d pictures are there; the same command goes on", a.kept_count + a.made,
                       a.pictures);
     } else if (ending && !(a.began > 0)) {
