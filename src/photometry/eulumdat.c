@@ -69,7 +69,7 @@ static noc_status read_colour(photometry_text *t, noc_profile *p, bool counts) {
     noc_status status = next_line(t, "the colour appearance", &line, &n);
     if (!status && counts) {
         p->info.kelvin = photometry_kelvin_field(line, n);
-        if (!p->info.kelvin)
+        if (p->info.kelvin == 0)
             p->info.kelvin = photometry_kelvin(p->info.lamp, strlen(p->info.lamp));
     }
     return status;

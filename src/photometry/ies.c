@@ -165,7 +165,7 @@ static noc_status read_labels(photometry_text *t, noc_profile *p, header *h, con
         }
         if (!first && n)
             first = line;
-        if (!p->info.kelvin)
+        if (p->info.kelvin == 0)
             p->info.kelvin = label_kelvin(line, n);
         keep(p, line, n, "[LUMINAIRE]", &p->info.name);
         keep(p, line, n, "[MANUFAC]", &p->info.manufacturer);
