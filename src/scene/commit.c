@@ -480,10 +480,11 @@ static void settle(commit *c) {
         settle_slots(&s->shapes[kind]);
     s->edits.len = 0;
     s->later_bytes = s->later_names.bytes;
-    if (s->committed)
+    if (s->committed) { /* which is written once: others ask it without the lock */
         count_versions(&s->versions, &c->changes);
-    else
-        s->first_later = s->meshes.len;
+        return;
+    }
+    s->first_later = s->meshes.len;
     s->committed = true;
 }
 

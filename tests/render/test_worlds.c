@@ -183,6 +183,57 @@ static void frames_and_commits_do_not_mix(void **state) {
     noc_scene_destroy(s);
 }
 
+enum { VISITS = 10 };
+typedef struct visitor {
+    noc_device *device;
+    const noc_scene *scene;
+    atomic_bool *stop;
+    atomic_int made;
+    int refused;
+} visitor;
+
+/* Comes to look, and goes. */
+static void *visit(void *arg) {
+    visitor *v = arg;
+    while (!*v->stop && !v->refused) {
+        noc_view *view = noc_view_create(v->device, v->scene);
+        v->refused += !view;
+        v->made += view ? 1 : VISITS;
+        noc_view_destroy(view);
+    }
+    return NULL;
+}
+
+/* Any thread may make a view while another one commits: ThreadSanitizer sees what it does not wait for. */
+static void views_are_made_beside_commits(void **state) {
+    enum { VISITORS = 2 };
+    (void)state;
+    noc_scene *s = street();
+    noc_device *device = own_device(2, NULL);
+    atomic_bool stop = false;
+    visitor all[VISITORS] = { 0 };
+    pthread_t thread[VISITORS];
+    for (int i = 0; i < VISITORS; i++) {
+        all[i].device = device;
+        all[i].scene = s;
+        all[i].stop = &stop;
+        assert_int_equal(pthread_create(&thread[i], NULL, visit, &all[i]), 0);
+    }
+    editor e = { .scene = s, .commits = 2 };
+    while (!e.failed && (all[0].made < VISITS || all[1].made < VISITS)) {
+        edit(&e);
+        usleep(1000); /* commits that follow each other at once let nobody in */
+    }
+    stop = true;
+    for (int i = 0; i < VISITORS; i++) {
+        pthread_join(thread[i], NULL);
+        assert_int_equal(all[i].refused, 0);
+    }
+    assert_false(e.failed);
+    noc_device_destroy(device);
+    noc_scene_destroy(s);
+}
+
 static double bytes_a_pixel(noc_view *v) {
     noc_camera camera = look(0, -8, 3, 0, 0, 1, 60);
     noc_frame_stats stats[2];
@@ -263,11 +314,9 @@ static void rays_are_replayed_before_a_commit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views_are_independent),
-        cmocka_unit_test(worlds_go_with_their_last_view),
-        cmocka_unit_test(frames_and_commits_do_not_mix),
-        cmocka_unit_test(instances_take_memory),
-        cmocka_unit_test(rays_are_replayed_before_a_commit),
+        cmocka_unit_test(views_are_independent),         cmocka_unit_test(worlds_go_with_their_last_view),
+        cmocka_unit_test(frames_and_commits_do_not_mix), cmocka_unit_test(views_are_made_beside_commits),
+        cmocka_unit_test(instances_take_memory),         cmocka_unit_test(rays_are_replayed_before_a_commit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
