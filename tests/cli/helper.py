@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""A helper that was taken over: sends what the environment's SAYS tells, a Python expression of records, and never ends
-by itself."""
-import os
+"""A helper that was taken over: sends what the file "says" in its folder tells, a Python expression of records, and
+never ends by itself."""
 import socket
 import struct
 import time
@@ -28,7 +27,7 @@ def log(level, message):
 s = socket.socket(fileno=3)
 s.recv(1 << 16)
 try:
-    s.sendall(eval(os.environ["SAYS"]))
+    s.sendall(eval(open("says").read()))
     time.sleep(1000)
 except OSError: # nobody listens any more
     pass

@@ -401,9 +401,10 @@ black='the picture is black: the camera sees nothing that a lamp could light; su
 test $status = 0 && grep -q "^nocturne: warning: $black\$" err
 result $? "a black picture below a lamp that shines up is told"
 run render down.obj $below
-test $status = 0 && test ! -s err; result $? "one that shines down lights it"
+quiet() { ! grep -v 'warning: Landlock is not here' err; } # which depends on the kernel
+test $status = 0 && quiet; result $? "one that shines down lights it"
 run render down.obj --size 32x18 --frames 1 -o out.png
-test $status = 0 && test ! -s err; result $? "a mesh is seen from outside"
+test $status = 0 && quiet; result $? "a mesh is seen from outside"
 run render down.obj --view street --size 32x18 --frames 1 -o out.png
 test $status = 0 && grep -q '^nocturne: warning: view street: the scene has none, so it is seen from outside$' err
 result $? "and where its street was asked for, that is said"

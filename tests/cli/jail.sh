@@ -177,10 +177,13 @@ if "$real" --version | grep -q gdal; then
     state() { sed -n 's/^State:\t\(.\).*/\1/p' "/proc/$1/status" 2>/dev/null; }
     for seconds in 4 8 16 32 64; do # on a busy machine more time goes by before it can be stopped
         "$real" info --reader-time $seconds in/endless.gpkg >out 2>err </dev/null &
-        pid=$! child=
+        pid=$! keeper='' child=
         until grep -q "^Max cpu time *$((seconds + 2)) " "/proc/$child/limits" 2>/dev/null ||
             [ "$(state $pid)" = Z ]; do
-            child=$(cat /proc/$pid/task/$pid/children 2>/dev/null) # its limit is set once it has all that it was asked
+            keeper=$(cat /proc/$pid/task/$pid/children 2>/dev/null)
+            keeper=${keeper% }
+            # it has its limit once it has all that it was asked
+            child=$(cat "/proc/$keeper/task/$keeper/children" 2>/dev/null)
             child=${child% }
         done
         kill -STOP $pid
@@ -190,6 +193,14 @@ if "$real" --version | grep -q gdal; then
         kill -CONT $pid
         wait $pid
     done
+    if "$real" --version | grep -q 'system calls by seccomp'; then
+        grep -q '^Seccomp:.*2$' "/proc/$child/status"; result $? "it may not make all system calls"
+    else
+        skip "it may not make all system calls" "no seccomp here"
+    fi
+    test -z "$(sed -n 's/^Cap[PE].*:\t//p' "/proc/$child/status" | tr -d '04\n')"
+    result $? "nor has it root's rights, but for reading" "$(grep Cap "/proc/$child/status")"
+    grep -q '^Max processes *0 ' "/proc/$child/limits"; result $? "nor may it start others"
     used=0 ticks=$(getconf CLK_TCK) after=$before
     while [ "${after:-Z}" != Z ] && [ "${used:-0}" -lt $((5 * (seconds + 2) * ticks)) ]; do
         sleep 0.2
@@ -199,7 +210,9 @@ if "$real" --version | grep -q gdal; then
     test "${before:-Z}" != Z && test "${after:-Z}" = Z
     result $? "it ends by itself where nobody ends it" \
         "helper ${child:-never seen}: $before, $after after ${used:-0} ticks"
-    test "$(kill -l "$(awk '{ print $NF }' "/proc/$child/stat")")" = XCPU; result $? "by the signal that tells why"
+    until after=$(state "$keeper") && [ "${after:-Z}" = Z ]; do sleep 0.05; done
+    test "$(kill -l "$(awk '{ print $NF }' "/proc/$keeper/stat")")" = XCPU
+    result $? "by the signal that tells why, as does who keeps it"
     kill -CONT $pid
     wait $pid
     test $? = 1 && grep -q 'limit --reader-time' err; result $? "and the error says so"
@@ -246,11 +259,17 @@ END
     (export NOCTURNE_READER="$work/mute"; timeout 60 "$program" info in/poles.shp >out 2>err; echo $? >ended)
     test "$(cat ended)" = 1 && grep -q 'hung up' err
     result $? "a helper that hangs up and stays is ended" "status $(cat ended): $(cat err)"
+    printf '#!/bin/sh\nenv >seen\n' >looks && chmod +x looks
+    (export NOCTURNE_READER="$work/looks" SOME_TOKEN=secret GDAL_HTTP_USERPWD=secret TZ=UTC LC_TIME=C
+     run info in/poles.shp)
+    grep -q '^TMPDIR=.*nocturne-scratch' seen && grep -q '^TZ=UTC' seen && grep -q '^LC_TIME=C' seen
+    result $? "its environment has what reading needs" "$(cat seen)"
+    ! grep -q 'secret\|^HOME' seen; result $? "and nothing else" "$(cat seen)"
     # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it,
     # or none
     says() {
         name=$1 expected=$2 pattern=$4
-        export SAYS="$3"
+        echo "$3" >says
         shift 4
         (export NOCTURNE_READER="$here/helper.py"; run info "$@" in/poles.shp; echo $status >ended)
         test "$(cat ended)" = "$expected" && grep -Eq -- "$pattern" err && test "$(grep -vc 'warning:' err)" = $expected

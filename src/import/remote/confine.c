@@ -1,27 +1,15 @@
 /* What the helper may do. Limits of the process hold everywhere; Landlock (files, Linux 5.13) and seccomp (system
  * calls) where the system and the build have them: they are a second fence behind the rules that the readers keep. */
-#include "import/remote/remote.h"
-#include "import/scratch.h"
-#include "noc_config.h"
+#include "import/remote/confine.h"
 
-#include <dirent.h>
-#include <dlfcn.h>
-#include <fcntl.h>
-#include <limits.h>
+#include <linux/capability.h>
+#include <signal.h>
 #include <stdio.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#if NOC_HAVE_LANDLOCK
-#include <linux/landlock.h>
-#endif
-#if NOC_HAVE_SECCOMP
-#include <errno.h>
-#include <linux/seccomp.h>
-#include <seccomp.h>
-#endif
 
 /* grace: how far above it the hard limit lies. */
 static void limit(int what, rlim_t most, rlim_t grace) {
@@ -33,7 +21,7 @@ static void limit(int what, rlim_t most, rlim_t grace) {
     setrlimit((__rlimit_resource_t)what, &now);
 }
 
-#ifndef REMOTE_SANITIZED
+#ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses, and whose reports may go to a file */
 /* Bytes of addresses that this program takes whatever it reads: its libraries, which are there, and what they set up.
  */
 static double own_addresses(void) {
@@ -46,161 +34,17 @@ static double own_addresses(void) {
         fclose(f);
     return SET_UP + pages * (double)sysconf(_SC_PAGESIZE);
 }
-#endif
 
-#if NOC_HAVE_LANDLOCK
-
-#define READ_FILES (LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE)
-#define READ_FOLDERS (READ_FILES | LANDLOCK_ACCESS_FS_READ_DIR)
-#define WRITE                                                                                                          \
-    (LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR |                  \
-     LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_DIR)
-
-static void allow(int rules, const char *path, uint64_t access) {
-    struct landlock_path_beneath_attr attr = { .allowed_access = access, .parent_fd = open(path, O_PATH | O_CLOEXEC) };
+/* Of addresses, and of what is written: a copy of the input has its holes, too. */
+static void limit_bytes(const char *path, double memory, bool scratch) {
     struct stat st;
-    if (attr.parent_fd < 0 || fstat(attr.parent_fd, &st))
-        return;
-    if (!S_ISDIR(st.st_mode))
-        attr.allowed_access &=
-            LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE;
-    syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &attr, 0);
-    close(attr.parent_fd);
-}
-
-/* Where libraries, their data and their plugins are. */
-static void allow_system(int rules) {
-    static const char *const places[] = { "/usr",
-                                          "/lib",
-                                          "/lib64",
-                                          "/opt",
-                                          "/nix/store",
-                                          "/gnu/store",
-                                          "/etc/ld.so.cache",
-                                          "/etc/localtime",
-                                          "/sys/devices/system/cpu",
-                                          "/dev/null",
-                                          "/dev/urandom",
-                                          "/proc/self",
-                                          "/proc/cpuinfo",
-                                          "/proc/meminfo" };
-    static const char *const variables[] = { "PROJ_DATA",        "PROJ_LIB",        "GDAL_DATA",
-                                             "GDAL_DRIVER_PATH", "OGR_DRIVER_PATH", "LD_LIBRARY_PATH" };
-    for (size_t i = 0; i < NOC_COUNT(places); i++)
-        allow(rules, places[i], READ_FOLDERS);
-    for (size_t i = 0; i < NOC_COUNT(variables); i++) {
-        const char *place = getenv(variables[i]);
-        for (size_t n; place && *place; place += n + (place[n] != 0)) {
-            n = strcspn(place, ":");
-            char path[PATH_MAX];
-            if (n && n < sizeof(path) && noc_snprintf(path, sizeof(path), "%.*s", (int)n, place) > 0)
-                allow(rules, path, READ_FOLDERS);
-        }
-    }
-    allow(rules, scratch_place(), READ_FOLDERS | WRITE);
-}
-
-/* GDAL and PROJ of one's own have their data beside themselves. */
-static void allow_beside(int rules, void *library, const char *function) {
-    Dl_info info;
-    void *at = dlsym(library, function);
-    char *path = at && dladdr(at, &info) ? realpath(info.dli_fname, NULL) : NULL,
-         *slash = path ? strrchr(path, '/') : NULL;
-    if (slash) {
-        char share[PATH_MAX + 10];
-        noc_snprintf(share, sizeof(share), "%.*s/../share", (int)(slash - path), path);
-        *slash = 0;
-        allow(rules, path, READ_FOLDERS);
-        allow(rules, share, READ_FOLDERS);
-    }
-    free(path);
-}
-
-/* The file itself and, of a map, its parts: those beside it whose names begin like its own; of a mesh the folder. */
-static void allow_input(int rules, const char *path, bool whole) {
-    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
-    char folder[PATH_MAX], part[PATH_MAX + NAME_MAX]; /* what does not fit cannot be opened */
-    noc_snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(base - path) : 2, slash ? path : "./");
-    size_t stem = dot ? (size_t)(dot - base) : strlen(base);
-    DIR *dir = opendir(folder);
-    struct dirent *entry;
-    allow(rules, path, READ_FILES);
-    allow(rules, folder, whole ? READ_FOLDERS : LANDLOCK_ACCESS_FS_READ_DIR);
-    while (dir && (entry = readdir(dir))) {
-        noc_snprintf(part, sizeof(part), "%s%s", folder, entry->d_name);
-        struct stat st;
-        if (!strncasecmp(entry->d_name, base, stem) && !stat(part, &st) && S_ISREG(st.st_mode))
-            allow(rules, part, READ_FILES);
-    }
-    if (dir)
-        closedir(dir);
-}
-
-static void confine_files(const char *path, bool whole, bool anywhere) {
-    struct landlock_ruleset_attr attr = { .handled_access_fs = READ_FOLDERS | WRITE };
-    int rules = (int)syscall(SYS_landlock_create_ruleset, &attr, sizeof(attr), 0);
-    if (rules < 0)
-        return;
-    allow_system(rules);
-    allow_beside(rules, dlopen(NOC_GDAL_LIBRARY, RTLD_LAZY | RTLD_NOLOAD), "GDALOpenEx");
-    allow_beside(rules, RTLD_DEFAULT, "proj_create");
-    if (anywhere)
-        allow(rules, "/", READ_FOLDERS);
-    else
-        allow_input(rules, path, whole);
-    syscall(SYS_landlock_restrict_self, rules, 0);
-    close(rules);
-}
-
-#else
-static void confine_files(const char *path, bool whole, bool anywhere) {}
-#endif
-
-#if NOC_HAVE_SECCOMP
-static void confine_calls(void) {
-    static const int calls[] = { SCMP_SYS(socket),
-                                 SCMP_SYS(connect),
-                                 SCMP_SYS(bind),
-                                 SCMP_SYS(listen),
-                                 SCMP_SYS(execve),
-                                 SCMP_SYS(execveat),
-                                 SCMP_SYS(ptrace),
-                                 SCMP_SYS(process_vm_readv),
-                                 SCMP_SYS(process_vm_writev),
-                                 SCMP_SYS(io_uring_setup),
-                                 SCMP_SYS(mount),
-                                 SCMP_SYS(unshare),
-                                 SCMP_SYS(setns),
-                                 SCMP_SYS(bpf),
-                                 SCMP_SYS(keyctl),
-                                 SCMP_SYS(userfaultfd) };
-    scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
-    for (size_t i = 0; filter && i < NOC_COUNT(calls); i++)
-        seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), calls[i], 0);
-    if (filter)
-        seccomp_load(filter);
-    seccomp_release(filter);
+    double copy = scratch ? memory + (stat(path, &st) ? 0 : (double)st.st_size) : 0;
+    limit(RLIMIT_AS, (rlim_t)(own_addresses() + memory), 0);
+    limit(RLIMIT_FSIZE, (rlim_t)copy, 0);
 }
 #else
-static void confine_calls(void) {}
+static void limit_bytes(const char *path, double memory, bool scratch) {}
 #endif
-
-static bool has_landlock(void) {
-#if NOC_HAVE_LANDLOCK
-    return syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
-#else
-    return false;
-#endif
-}
-
-/* A filter of 0 is refused in any case; EFAULT says that there are filters. */
-static bool has_seccomp(void) {
-#if NOC_HAVE_SECCOMP
-    return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, NULL, 0, 0) == -1 && errno == EFAULT;
-#else
-    return false;
-#endif
-}
 
 const char *noc_isolation(void) {
     static const char *const texts[2][2] = {
@@ -209,7 +53,17 @@ const char *noc_isolation(void) {
         { "a process of its own and limits, files by Landlock; seccomp for system calls is not there",
           "a process of its own and limits, files by Landlock, system calls by seccomp" },
     };
-    return texts[has_landlock()][has_seccomp()];
+    return texts[confine_has_landlock()][confine_has_seccomp()];
+}
+
+const char *remote_short_of_fences(void) {
+    static const char *const texts[2] = {
+        "neither Landlock nor seccomp is here: a map or an OBJ that takes over the process that reads it may do what "
+        "you may",
+        "Landlock is not here (Linux has it since 5.13): a map or an OBJ that takes over the process that reads it may "
+        "read files of yours, one in GeoPackage, OpenStreetMap or an archive may write some, too",
+    };
+    return confine_has_landlock() ? NULL : texts[confine_has_seccomp()];
 }
 
 bool remote_short_of_memory(void) {
@@ -225,17 +79,51 @@ bool remote_short_of_memory(void) {
     return !getrlimit(RLIMIT_AS, &most) && most.rlim_cur != RLIM_INFINITY && 2 * 1024 * peak > (double)most.rlim_cur;
 }
 
+/* Root has no rights but that of reading what belongs to others. */
+static void drop_rights(void) {
+    struct __user_cap_header_struct head = { .version = _LINUX_CAPABILITY_VERSION_3 };
+    struct __user_cap_data_struct has[_LINUX_CAPABILITY_U32S_3] = { 0 };
+    if (syscall(SYS_capget, &head, has))
+        return;
+    for (int i = 0; i < _LINUX_CAPABILITY_U32S_3; i++) {
+        has[i].permitted &= i ? 0 : 1u << CAP_DAC_READ_SEARCH;
+        has[i].effective &= has[i].permitted;
+        has[i].inheritable = 0;
+    }
+    syscall(SYS_capset, &head, has);
+}
+
+/* What a file that begins so needs. GDAL writes a large OpenStreetMap file, which may lie in an archive, into one of
+ * its own before it reads it; a GeoPackage with a log is copied, and SQLite sorts in files; a Shapefile is several
+ * files, whose endings are in any case. */
+static confine_needs needs_of(const char *path, bool whole, bool anywhere) {
+    static const char *const written[] = { "SQLite format 3", "PK\3\4", "\x1f\x8b", "<", "\xef\xbb\xbf<" };
+    confine_needs needs = { .whole = whole, .anywhere = anywhere };
+    char head[64] = "";
+    FILE *f = whole ? NULL : fopen(path, "rb");
+    size_t n = f ? fread(head, 1, sizeof(head), f) : 0;
+    if (f)
+        fclose(f);
+    for (size_t i = 0; i < NOC_COUNT(written); i++)
+        needs.scratch |= n >= strlen(written[i]) && !memcmp(head, written[i], strlen(written[i]));
+    needs.scratch |= memmem(head, n, "OSMHeader", 9) != NULL;
+    needs.lists = n >= 4 && !memcmp(head, "\0\0\x27\x0a", 4);
+    return needs;
+}
+
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
-    unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
+    confine_needs needs = needs_of(path, whole, params->allow_outside);
     limit(RLIMIT_CORE, 0, 0);
     /* Where who started it no longer looks at the clock, of all threads together: only meshes are read by some. SIGXCPU
      * comes at the limit and tells why the process ended; SIGKILL comes after the grace. */
     double threads = whole ? NOC_MAX(params->threads, 1) : 1;
     limit(RLIMIT_CPU, (rlim_t)(NOC_MIN(params->reader_time, 1e9) * threads) + 2, 2);
-#ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
-    limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory), 0);
-#endif
+    signal(SIGXFSZ, SIG_IGN); /* writing more fails, as on a disk that is full */
+    limit_bytes(path, import_budget_of(params).memory, needs.scratch);
+    if (!whole)
+        limit(RLIMIT_NPROC, 0, 0); /* of all that this user runs: it can take no more, and that holds root up nowhere */
+    drop_rights();
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    confine_files(path, whole, params->allow_outside);
-    confine_calls();
+    confine_files(path, &needs);
+    confine_calls(&needs);
 }

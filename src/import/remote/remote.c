@@ -75,13 +75,46 @@ static noc_status find_program(remote *r) {
     return status;
 }
 
-/* The environment with TMPDIR in the scratch folder: whatever the helper leaves goes with it. NULL: memory was refused.
- */
+/* What the helper's libraries are found by, and read by; nothing else, as there may be secrets. A name that ends in *
+ * is the beginning of some. */
+static const char *const kept_variables[] = { "GDAL_DATA",
+                                              "GDAL_DRIVER_PATH",
+                                              "GLIBC_TUNABLES",
+                                              "LANG",
+                                              "LC_*",
+                                              "LD_*",
+                                              "LOCPATH",
+                                              "OGR_DRIVER_PATH",
+                                              "OGR_GEOJSON_MAX_OBJ_SIZE",
+                                              "OSM_MAX_TMPFILE_SIZE",
+                                              "PROJ_DATA",
+                                              "PROJ_LIB",
+                                              "SHAPE_ENCODING",
+                                              "TZ",
+                                              "TZDIR",
+                                              "ASAN_OPTIONS",
+                                              "LSAN_OPTIONS",
+                                              "TSAN_OPTIONS",
+                                              "UBSAN_OPTIONS" };
+
+static bool is_kept(const char *variable) {
+    for (size_t i = 0; i < NOC_COUNT(kept_variables); i++) {
+        const char *name = kept_variables[i];
+        size_t n = strcspn(name, "*");
+        if (!strncmp(variable, name, n) && (name[n] || variable[n] == '='))
+            return true;
+    }
+    return false;
+}
+
+/* With TMPDIR in the scratch folder, so that whatever the helper leaves goes with it, and libraries kept from starting
+ * threads as they are loaded. NULL: memory was refused. */
 static char **make_environment(const char *scratch, char **own) {
+    static const char *const single[] = { "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1" };
     size_t n = 0, kept = 0;
     while (environ[n])
         n++;
-    char **list = noc_calloc(n + 2, sizeof(*list));
+    char **list = noc_calloc(n + NOC_COUNT(single) + 2, sizeof(*list));
     *own = noc_format("TMPDIR=%s", scratch);
     if (!list || !*own) {
         free(list);
@@ -89,8 +122,10 @@ static char **make_environment(const char *scratch, char **own) {
         return NULL;
     }
     for (size_t i = 0; i < n; i++)
-        if (strncmp(environ[i], "TMPDIR=", 7))
+        if (is_kept(environ[i]))
             list[kept++] = environ[i];
+    for (size_t i = 0; i < NOC_COUNT(single); i++)
+        list[kept++] = (char *)single[i];
     list[kept] = *own;
     return list;
 }
@@ -154,7 +189,7 @@ static noc_status start(remote *r) {
         return noc_no_memory(r->sink->log, r->path);
     if (sent)
         return NOC_OK;
-    kill(r->pid, SIGKILL); /* it does not listen; why it ended, if it did, is told */
+    kill(r->pid, SIGTERM); /* it does not listen; why it ended, if it did, is told */
     return ended_early(r);
 }
 
@@ -254,12 +289,26 @@ static noc_status listen_to(remote *r) {
     return status;
 }
 
-static void finish(remote *r) {
-    if (r->pid > 0) {
-        kill(r->pid, SIGKILL); /* after its last word, too: it need not go by itself */
-        while (waitpid(r->pid, NULL, 0) < 0 && errno == EINTR)
-            continue;
+/* After its last word, too: it need not go by itself. The keeper takes along what it has started; it is not asked
+ * twice. */
+static void end(remote *r) {
+    double until = noc_wall_seconds() + GRACE;
+    pid_t got = 0;
+    kill(r->pid, SIGTERM);
+    for (int pause = 0; (!got || (got < 0 && errno == EINTR)) && noc_wall_seconds() < until; pause = 1) {
+        poll(NULL, 0, pause);
+        got = waitpid(r->pid, NULL, WNOHANG);
     }
+    if (got)
+        return;
+    kill(r->pid, SIGKILL);
+    while (waitpid(r->pid, NULL, 0) < 0 && errno == EINTR)
+        continue;
+}
+
+static void finish(remote *r) {
+    if (r->pid > 0)
+        end(r);
     if (r->fd >= 0)
         close(r->fd);
     scratch_remove(&r->scratch);
@@ -279,8 +328,11 @@ noc_status remote_read(const noc_reader *reader, const char *path, const noc_imp
                  .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
     static atomic_bool told;
     *result = (remote_result){ 0 };
-    if (!atomic_exchange(&told, true))
+    if (!atomic_exchange(&told, true)) {
         noc_info(sink->log, "files of other people's formats are read in %s", noc_isolation());
+        if (remote_short_of_fences())
+            noc_warn(sink->log, "%s (docs/formats.md)", remote_short_of_fences());
+    }
     noc_status status = start(&r);
     if (!status)
         status = listen_to(&r);

@@ -4,11 +4,14 @@
  * back: the calls of a geo_sink, or materials and meshes. The helper limits itself (confine.c) and is killed
  * when the work is cancelled, takes too long or sends too much. It is the same library, so the records are the structs
  * as they lie in memory; but what comes back is not trusted: the helper may have been taken over by the file it read.
+ * A second process of it keeps the one that reads (keep.c), and leaves nothing of it.
  */
 #ifndef NOC_IMPORT_REMOTE_H
 #define NOC_IMPORT_REMOTE_H
 
 #include "import/import.h"
+
+#include <sys/types.h>
 
 #define REMOTE_FD 3        /* the helper's end of the socket */
 #define REMOTE_NO_MEMORY 3 /* the helper's exit status where it has none for its answer */
@@ -160,12 +163,17 @@ char *remote_room(remote_taker *t, size_t size);
 bool remote_take(remote_taker *t, noc_status *status);
 void remote_taker_free(remote_taker *t);
 
-/* ---- the helper's side (serve.c, confine.c) ---- */
+/* ---- the helper's side (keep.c, serve.c, confine.c) ---- */
 
-/* Limits this process: memory, processor time, no core file, and where the system can: no network, no other program,
- * and of files those to be read by name, the folder's where `whole` (or all of them: anywhere), the system's own, and
- * the temporary folder. */
+/* Makes this process the keeper of another one, which returns: true, and *parent: who started the keeper. The keeper
+ * ends when that one has, in its way, after all that it has started. false: there can be none. */
+bool remote_keep(pid_t *parent);
+/* Limits this process: memory, processor time, no core file, no process more, and where the system can: no system calls
+ * but those of reading, and of files those to be read by name, the folder's where `whole` (or all of them: anywhere),
+ * the system's own, and the temporary folder where the file's format needs one. */
 void remote_confine(const char *path, bool whole, const noc_import_params *params);
+/* What may happen for want of Landlock, as a warning's text; NULL where it is there. */
+const char *remote_short_of_fences(void);
 /* Did this process take more than half of the memory that it may? Then a library may have failed because it wanted
  * more: lists that grow are doubled, and libraries seldom say that memory was refused. */
 bool remote_short_of_memory(void);

@@ -3,8 +3,6 @@
 #include "import/remote/remote.h"
 
 #include <malloc.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -272,10 +270,11 @@ int noc_reader_main(void) {
     int type;
     socklen_t size = sizeof(type);
     serving s = { 0 };
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    pid_t parent;
+    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_keep(&parent))
+        return 1;
     mallopt(M_ARENA_MAX, 1); /* each takes addresses, of which the helper gets few */
-    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) ||
-        getppid() != s.asked.sink.parent)
+    if (!remote_receive(REMOTE_FD, &s.asked) || parent != s.asked.sink.parent)
         /* not started by the library, or whoever started it ended before it asked to end with it */
         return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1;
     if (s.asked.reader->load)
