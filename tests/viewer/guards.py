@@ -10,7 +10,7 @@ import tempfile
 import time
 
 import tap
-from wire import TOKEN, Client, Closed, Picture, Program
+from wire import LIMIT, TOKEN, Client, Closed, Picture, Program, joined
 
 SCENE = "builtin:single"
 TRACK = """<?xml version='1.0'?><gpx version='1.1' xmlns='http://www.topografix.com/GPX/1/1'><trk><name>a</name><trkseg>
@@ -20,19 +20,12 @@ TRACK = """<?xml version='1.0'?><gpx version='1.1' xmlns='http://www.topografix.
 
 def check_alive(p):
     """Another client is served."""
-    c = Client(p)
-    assert c.status == 101, c.status
+    c = joined(p)
     c.say("hello", width=64, height=36)
     c.text_of("welcome")
     picture = c.picture()
     assert picture.width <= 64 and picture.body[:2] in (b"\xff\xd8", b"\x89P"), picture.body[:4]
     c.close()
-    wait_free(p)
-
-
-def wait_free(p):
-    """Until those that have left are gone, so that the next test has all places."""
-    time.sleep(0.15)
 
 
 # ---- HTTP
@@ -86,14 +79,13 @@ def test_slow_and_idle_connections_end(p):
         s.sendall(b"GET / HTTP/1.1\r\nHost: 127")
     time.sleep(0.5)
     for s in sockets:
-        s.settimeout(40)
         try:
             while s.recv(100):
                 pass
         except ConnectionError:
             pass
         s.close()
-    assert time.monotonic() - start < 40
+    assert time.monotonic() - start < LIMIT
     check_alive(p)
 
 
@@ -110,7 +102,6 @@ def test_strange_requests_harm_nobody(p):
         try:
             s.sendall(request)
             s.shutdown(socket.SHUT_WR)
-            s.settimeout(15)
             data = b"".join(iter(lambda s=s: s.recv(65536), b""))
             assert b" 101 " not in data[:40], data[:100]
         except OSError as error:  # it closed first
@@ -129,8 +120,7 @@ def test_the_token_is_asked_for(p):
         assert Client(p, path=path).status != 101, path
     for path in "/?token=" + TOKEN, "/wss?token=" + TOKEN, "/index.html?token=" + TOKEN:
         assert Client(p, path=path).status == 404, path
-    assert Client(p, path=same).status == 101
-    wait_free(p)
+    joined(p, path=same).close()
 
 
 def test_other_sites_are_refused(p):
@@ -138,34 +128,29 @@ def test_other_sites_are_refused(p):
                    "http://localhost:%d" % p.port, "http://127.0.0.1:%d" % (p.port + 1), "http://127.0.0.1",
                    "http://127.0.0.1:%d.evil.example" % p.port, "127.0.0.1:%d" % p.port):
         assert Client(p, origin=origin).status == 403, origin
-    assert Client(p, origin="same").status == 101
-    assert Client(p, host="localhost:%d" % p.port).status == 101
-    wait_free(p)
+    joined(p, origin="same").close()
+    joined(p, host="localhost:%d" % p.port).close()
 
 
 def test_the_subprotocol_is_asked_for(p):
     for protocol in None, "nocturne-2", "http", "chat, nocturne-1x":
         assert Client(p, protocol=protocol).status != 101, protocol
-    wait_free(p)
 
 
 def test_there_are_so_many_clients(p):
-    clients = [Client(p) for _ in range(4)]
-    assert [c.status for c in clients] == [101] * 4
+    clients = [joined(p) for _ in range(4)]
     assert Client(p).status == 503
     clients[0].close()
-    time.sleep(0.5)
-    assert Client(p).status == 101
+    joined(p).close()
     for c in clients[1:]:
         c.close()
-    time.sleep(0.5)
     check_alive(p)
 
 
 # ---- messages
 
 def test_broken_messages_close_that_client(p):
-    other = Client(p)
+    other = joined(p)
     other.say("hello", width=64, height=36)
     other.picture()
     deep = '{"t":"hello","x":' + "[" * 10000 + "]" * 10000 + "}"
@@ -181,22 +166,19 @@ def test_broken_messages_close_that_client(p):
                        (b'{"t":"set","name":"' + b"a" * 5000 + b'","value":""}', policy),
                        (b'{"t":"watch","on":true,"x":"' + b"a" * 40000 + b'"}', 1009),
                        (b'{"t":"watch","on":true,"x":"\xff"}', 1007), (b"\xed\xa0\x80", 1007), (b"\xc0\x80", 1007)):
-        c = Client(p)
-        assert c.status == 101
+        c = joined(p)
         c.text(text)
         got = c.closed()
         assert got == code or (got is None and len(text) > 4096), (text[:60], got) # what is unread resets it
         c.close()
-        wait_free(p)
     other.say("input", n=1, turn=[0.1, 0])
     other.wait_for(lambda m: isinstance(m, Picture) and m.input == 1)
     other.close()
-    wait_free(p)
 
 
 def test_binary_and_broken_frames_close_it(p):
     def frames(*what):
-        c = Client(p)
+        c = joined(p)
         try:
             for values in what:
                 c.frame(**values)
@@ -204,7 +186,6 @@ def test_binary_and_broken_frames_close_it(p):
         except (ConnectionError, BrokenPipeError):
             code = None
         c.close()
-        wait_free(p)
         assert code != "open", what
         return code
 
@@ -218,7 +199,7 @@ def test_binary_and_broken_frames_close_it(p):
 
 
 def test_pieces_are_one_message(p):
-    c = Client(p)
+    c = joined(p)
     text = b'{"t":"hello","width":64,"height":36}'
     for i, byte in enumerate(text):
         c.frame(bytes([byte]), opcode=0 if i else 1, final=i + 1 == len(text))
@@ -226,7 +207,7 @@ def test_pieces_are_one_message(p):
             c.frame(b"", opcode=9)
     c.picture()
     c.close()
-    c = Client(p)
+    c = joined(p)
     try:
         c.frame(b'{"t":"watch","on":true,"x":"', final=False)
         for _ in range(60):
@@ -236,11 +217,10 @@ def test_pieces_are_one_message(p):
         code = None
     assert code in (1009, None), code
     c.close()
-    wait_free(p)
 
 
 def test_a_frame_of_16_exabytes(p):
-    c = Client(p)
+    c = joined(p)
     before = p.memory()
     c.socket.sendall(b"\x81\xff" + b"\xff" * 8 + b"\0\0\0\0" + b"a" * 100)
     code = c.closed(10)
@@ -252,7 +232,7 @@ def test_a_frame_of_16_exabytes(p):
 def test_pings_and_pongs_are_counted(p):
     for payload in b"", b"a" * 100:
         for opcode in 9, 10:
-            c, code = Client(p), "open"
+            c, code = joined(p), "open"
             end = time.monotonic() + 15
             try:
                 c.socket.settimeout(0.5)
@@ -266,8 +246,7 @@ def test_pings_and_pongs_are_counted(p):
                 code = None
             c.close()
             assert code != "open", (opcode, len(payload))
-            wait_free(p)
-    c = Client(p) # a browser's are taken
+    c = joined(p) # a browser's are taken
     c.say("hello", width=64, height=36)
     for _ in range(100):
         c.frame(b"x", opcode=9)
@@ -282,7 +261,6 @@ def test_a_body_is_no_request(p):
     for head in b"Content-Length: %d" % len(inner), b"Transfer-Encoding: chunked":
         with p.raw() as s:
             s.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n" + head + b"\r\n\r\n" + inner)
-            s.settimeout(15)
             data = b""
             try:
                 data = b"".join(iter(lambda s=s: s.recv(65536), b""))
@@ -295,7 +273,7 @@ def test_a_body_is_no_request(p):
 
 def test_frames_without_a_mask_harm_nobody(p):
     """libwebsockets takes them: masks are for proxies in between."""
-    c = Client(p)
+    c = joined(p)
     c.socket.sendall(b"\x81\x05hello" + b"\x81\x7e\xff\xff" + b"{" * 65535)
     assert c.closed() != "open"
     c.close()
@@ -324,7 +302,7 @@ def test_the_terminal_stays_quiet(p):
 
 def test_rates_are_held(p):
     def flood(count, make):
-        c = Client(p)
+        c = joined(p)
         try:
             for i in range(count):
                 c.text(make(i))
@@ -332,20 +310,18 @@ def test_rates_are_held(p):
         except (ConnectionError, BrokenPipeError):
             code = None
         c.close()
-        wait_free(p)
         return code
 
     # an inputs' worth is taken: 60 a second for 10 s, at once
-    c = Client(p)
+    c = joined(p)
     c.say("hello", width=64, height=36)
     for i in range(600):
         c.say("input", n=i + 1)
     c.wait_for(lambda m: isinstance(m, Picture) and m.input == 600)
     c.close()
-    wait_free(p)
     assert flood(20000, lambda i: '{"t":"input","n":%d}' % i) in (1008, None)
     assert flood(100, lambda i: '{"t":"watch","on":true,"x":"%s"}' % ("a" * 30000)) in (1008, None)
-    c = Client(p) # pieces without a byte are no way around it
+    c = joined(p) # pieces without a byte are no way around it
     try:
         c.frame(b"{", final=False)
         for _ in range(20000):
@@ -359,13 +335,13 @@ def test_rates_are_held(p):
 
 def test_who_does_not_read_holds_no_memory(p):
     """It is sent one picture, and then none; and is dropped after a while."""
-    c = Client(p, receive=4096)
+    c = joined(p, receive=4096)
     c.say("hello", width=1280, height=720)
     c.text_of("welcome")
     time.sleep(1)
     before, start, n = p.memory(), time.monotonic(), 0
     dropped = False
-    while time.monotonic() - start < 45 and not dropped:
+    while time.monotonic() - start < LIMIT and not dropped:
         n += 1
         try:
             c.say("input", n=n, turn=[0.01, 0], seconds=0.05)
@@ -392,7 +368,7 @@ def test_nothing_is_rendered_for_nobody(p):
         return (p.cpu() - before) / seconds
 
     assert used() < 0.05, "without clients"
-    c = Client(p)
+    c = joined(p)
     c.say("hello", width=640, height=360)
     c.say("set", name="frames", value="0") # without end
     c.text_of("welcome")
@@ -408,7 +384,6 @@ def test_nothing_is_rendered_for_nobody(p):
     share = used()
     assert share < 0.1, "not acknowledged: %.2f" % share
     c.close()
-    wait_free(p)
 
 
 def test_cars_wait_for_who_looks(p):

@@ -31,10 +31,13 @@ class Picture:
         self.moving = bool(self.flags & 1)
 
 
+LIMIT = 120 # s: what has not come by then does not come; machines that run many tests at once stand still for a while
+
+
 class Program:
     """`nocturne view` at a free port."""
 
-    def __init__(self, *arguments, program=None, address="127.0.0.1", port=0, wait=20):
+    def __init__(self, *arguments, program=None, address="127.0.0.1", port=0):
         self.program = program or os.environ["NOC_PROGRAM"]
         self.process = subprocess.Popen(
             ["env", "--default-signal=INT", self.program, "view", *arguments, "--port", str(port), "--address", address,
@@ -82,7 +85,7 @@ class Program:
 
     def raw(self):
         """A TCP connection."""
-        return socket.create_connection((self.address, self.port), timeout=20)
+        return socket.create_connection((self.address, self.port), timeout=LIMIT)
 
     def http(self, path="/", method="GET", host=None, headers=(), version="1.1"):
         """(status, headers, body) of a request of its own connection."""
@@ -111,6 +114,18 @@ def read_response(s):
     return status, dict(line.lower().split(": ", 1) for line in lines[1:] if ": " in line), body
 
 
+def joined(program, **values):
+    """A client that has a place: those who have left may hold theirs for a moment."""
+    deadline = time.monotonic() + LIMIT
+    while True:
+        c = Client(program, **values)
+        if c.status != 503 or time.monotonic() > deadline:
+            assert c.status == 101, c.status
+            return c
+        c.close()
+        time.sleep(0.02)
+
+
 class Client:
     """A WebSocket. Its messages are masked as those of browsers are, with a mask of zeroes."""
 
@@ -119,7 +134,7 @@ class Client:
         self.socket = socket.socket(socket.AF_INET6 if ":" in program.address else socket.AF_INET)
         if receive:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive)
-        self.socket.settimeout(20)
+        self.socket.settimeout(LIMIT)
         self.socket.connect((program.address, program.port))
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as browsers do
         host = "127.0.0.1:%d" % program.port if host is None else host
@@ -174,7 +189,7 @@ class Client:
             self.bytes += len(piece)
             self.buffer += piece
 
-    def receive(self, timeout=20):
+    def receive(self, timeout=LIMIT):
         """The next message: a dict of text, a Picture of binary. socket.timeout, or Closed."""
         deadline = time.monotonic() + timeout
         while True:
@@ -217,7 +232,7 @@ class Client:
         return self.wait_for(lambda m: isinstance(m, Picture) and m.kind == 1 and
                              all(getattr(m, k) == v for k, v in values.items()), timeout)
 
-    def closed(self, timeout=20):
+    def closed(self, timeout=LIMIT):
         """The code with which the program closes, None without a close frame."""
         try:
             while True:
