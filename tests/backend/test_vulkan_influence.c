@@ -171,6 +171,43 @@ static void too_many_leaves(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* ---- figures of the last frame ---- */
+
+/* They are the frame's, whatever has been added or removed since. */
+static void figures_after_an_edit(void **state) {
+    noc_scene *scene = has_vulkan(messages) ? builtin("mess", 0, 50) : NULL;
+    noc_camera camera;
+    twins t;
+    (void)state;
+    if (!scene)
+        skip();
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, (double)W / H, &camera), NOC_OK);
+    open_with(scene, 0, 0, &t);
+    noc_render_params p = over_volumes(NOC_METHOD_RIS, 0);
+    int added[3000];
+    for (int step = 0; step < 3; step++) {
+        noc_light_stats cpu, gpu;
+        expect_same_frame(&t, &camera, &p, "before an edit");
+        for (size_t i = 0; i < NOC_COUNT(added) && step < 2; i++) {
+            noc_light l = { .kind = NOC_LIGHT_POINT, .position = { (double)i, 1, 5 }, .emission = { 1, 1, 1 } };
+            if (step)
+                assert_int_equal(noc_scene_remove_light(scene, added[i]), NOC_OK);
+            else
+                assert_true((added[i] = noc_scene_add_light(scene, &l)) >= 0);
+        }
+        assert_int_equal(noc_scene_commit(scene), NOC_OK);
+        noc_view_light_stats(t.cpu, &cpu);
+        noc_view_light_stats(t.gpu, &gpu);
+        print_message("# %llu surfaces, %u and %u lights\n", (unsigned long long)gpu.surfaces, gpu.found_median,
+                      gpu.found_99);
+        assert_true(gpu.surfaces > 0 && gpu.surfaces <= (uint64_t)W * H);
+        assert_true(cpu.surfaces == gpu.surfaces && cpu.found_median == gpu.found_median &&
+                    cpu.found_99 == gpu.found_99 && cpu.found_none == gpu.found_none);
+    }
+    close_twins(&t);
+    noc_scene_destroy(scene);
+}
+
 /* ---- a pool that is too small ---- */
 
 static double mean_of(noc_view *v) {
@@ -255,6 +292,7 @@ int main(void) {
         cmocka_unit_test(in_a_mess),
         cmocka_unit_test(any_size_of_group_and_band),
         cmocka_unit_test(too_many_leaves),
+        cmocka_unit_test(figures_after_an_edit),
         cmocka_unit_test(a_pool_without_room_is_told),
     };
     messages = noc_log_create(&(noc_log_params){ .message = keep, .level = NOC_LOG_WARN });

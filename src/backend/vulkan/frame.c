@@ -178,7 +178,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .list_flags = (frame->plan->learns ? LIST_LEARNS : 0) | (frame->plan->mixes ? LIST_MIXES : 0) |
                       (frame->plan->shares_rays ? LIST_SHARES : 0) |
                       (noc_stage_has(&frame->plan->stages[0], NOC_PASS_SEEN_BEFORE) ? LIST_FRESH : 0),
-        .found_bins = noc_found_bins(v->scene->lights.len),
+        .found_bins = v->found_bins,
         .list_room = l->room,
         .observed_rows = l->rows,
         .cells = l->cells,

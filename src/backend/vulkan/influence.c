@@ -79,8 +79,6 @@ void *noc_vk_pack_influence(const noc_influence *influence, size_t *bytes) {
 
 /* ---- what a frame draws from ---- */
 
-static uint32_t found_bins(const vk_view *v) { return noc_found_bins(v->scene->lights.len); }
-
 noc_status noc_vk_get_influence(vk_view *v, const noc_frame *frame) {
     noc_light_set_release(v->world->lights_set, &v->sources);
     noc_status status = noc_vk_influence(v, frame->params, &v->sources.influence);
@@ -91,7 +89,8 @@ noc_status noc_vk_get_influence(vk_view *v, const noc_frame *frame) {
     v->drawn.bytes = volumes->bytes;
     for (int i = 0; i < NOC_INFLUENCE_STEPS; i++)
         v->drawn.build_seconds += volumes->seconds[i];
-    return noc_vk_fit_buffer(v, 4 * (size_t)found_bins(v), "influence", &v->found);
+    v->found_bins = noc_found_bins(v->scene->lights.len);
+    return noc_vk_fit_buffer(v, 4 * (size_t)v->found_bins, "influence", &v->found);
 }
 
 void noc_vk_clear_found(vk_view *v, VkCommandBuffer commands) {
@@ -102,9 +101,10 @@ void noc_vk_clear_found(vk_view *v, VkCommandBuffer commands) {
 static uint64_t surfaces_finding(const void *counts, uint32_t lights) { return ((const uint32_t *)counts)[lights]; }
 
 void noc_vk_note_found(vk_view *v, noc_light_stats *out) {
-    uint32_t bins = found_bins(v), *counts = noc_alloc_large(bins, sizeof(*counts));
+    uint32_t bins = v->found_bins, *counts = noc_alloc_large(bins, sizeof(*counts));
     pthread_mutex_lock(&v->device->lock);
-    if (counts && v->found.bytes && noc_vk_read(v->device, &v->found, 0, counts, bins * sizeof(*counts)) == NOC_OK)
+    if (counts && bins && v->found.bytes &&
+        noc_vk_read(v->device, &v->found, 0, counts, bins * sizeof(*counts)) == NOC_OK)
         noc_light_set_note_found(surfaces_finding, counts, bins, out);
     pthread_mutex_unlock(&v->device->lock);
     free(counts);

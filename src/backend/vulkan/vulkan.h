@@ -279,7 +279,8 @@ typedef struct vk_view {
     bool open;  /* a frame is being recorded, and the device is locked */
     vk_hazards hazards;
     vk_buffer samples, scratch, counters, given;
-    vk_buffer found; /* influence: surfaces of the last frame by the number of lights that they found */
+    vk_buffer found;     /* influence: surfaces of the last frame by the number of lights that they found */
+    uint32_t found_bins; /* of them */
     vk_learning learning;
     vk_steps steps; /* of the stage at work */
     vk_views views;
