@@ -1,9 +1,13 @@
 /* Vulkan devices that cannot render, and say why; memory that a picture does not fit into; more models than a driver
  * allows allocations. The driver's answers are changed on their way. */
 #include "../render/rooms.h"
+#include "render/device.h"
 #include "vulkan_fault.h"
 
 #include <nocturne/nocturne.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
 
 static const noc_camera camera = { .eye = { 0, -11, 3 }, .target = { 0, 0, 2 }, .up = { 0, 0, 1 }, .fov_deg = 60 };
 
@@ -333,6 +337,45 @@ static void models_share_allocations(void **state) {
     expect_nothing_left("models");
 }
 
+/* ---- the file of compiled shaders ---- */
+
+/* A pipe in its place is not waited for. */
+static void a_pipe_in_place_of_the_cache(void **state) {
+    char folder[] = "/tmp/noc-vulkan-cache-XXXXXX", path[200];
+    const char *before = getenv("XDG_CACHE_HOME");
+    char *kept = before ? noc_strdup(before) : NULL;
+    VkPhysicalDeviceProperties p;
+    (void)state;
+    if (!has_vulkan())
+        skip();
+    assert_non_null(mkdtemp(folder));
+    noc_device *device = open_vulkan();
+    vkGetPhysicalDeviceProperties(((const vk_device *)device->state)->physical, &p);
+    noc_device_destroy(device);
+    setenv("XDG_CACHE_HOME", folder, 1);
+    snprintf(path, sizeof(path), "%s/nocturne", folder);
+    assert_int_equal(mkdir(path, 0700), 0);
+    size_t at = strlen(path);
+    at += (size_t)snprintf(path + at, sizeof(path) - at, "/vulkan-");
+    for (size_t i = 0; i < VK_UUID_SIZE; i++)
+        at += (size_t)snprintf(path + at, sizeof(path) - at, "%02x", p.pipelineCacheUUID[i]);
+    snprintf(path + at, sizeof(path) - at, ".bin");
+    assert_int_equal(mkfifo(path, 0600), 0);
+    alarm(200); /* as if it hung */
+    assert_non_null(device = open_vulkan());
+    alarm(0);
+    noc_device_destroy(device);
+    unlink(path);
+    *strrchr(path, '/') = 0;
+    rmdir(path);
+    rmdir(folder);
+    if (kept)
+        setenv("XDG_CACHE_HOME", kept, 1);
+    else
+        unsetenv("XDG_CACHE_HOME");
+    free(kept);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(devices_say_what_they_lack, start),
@@ -341,6 +384,7 @@ int main(void) {
         cmocka_unit_test_setup(pictures_beyond_the_heap, start),
         cmocka_unit_test_setup(buffers_beyond_what_is_given_at_once, start),
         cmocka_unit_test_setup(models_share_allocations, start),
+        cmocka_unit_test_setup(a_pipe_in_place_of_the_cache, start),
     };
     fault_more = replace_more;
     messages = open_messages();

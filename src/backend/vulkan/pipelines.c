@@ -5,7 +5,11 @@
 #include "base/output.h"
 #include "noc_vulkan_spirv.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_CACHE = 1 << 30 }; /* bytes of the file */
 
 typedef struct module {
     const uint32_t *code; /* NULL: none */
@@ -70,16 +74,26 @@ static char *cache_path(const vk_device *d, bool make) {
     return path;
 }
 
+/* NULL: there is no such file, or something else, which is not waited for. */
+static FILE *open_cache(const char *path) {
+    struct stat st;
+    int fd = path ? open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
+    FILE *file = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) ? fdopen(fd, "rb") : NULL;
+    if (fd >= 0 && !file)
+        close(fd);
+    return file;
+}
+
 /* Returns what an earlier process has kept, NULL: nothing that can be used. */
 static void *read_cache(const vk_device *d, size_t *bytes) {
     char *path = cache_path(d, false);
-    FILE *file = path ? fopen(path, "rb") : NULL;
+    FILE *file = open_cache(path);
     cache_head head;
     void *data = NULL;
     free(path);
     if (!file)
         return NULL;
-    if (fread(&head, sizeof(head), 1, file) == 1 && !memcmp(head.magic, "nocvkpc", 8) && head.bytes < 1 << 30 &&
+    if (fread(&head, sizeof(head), 1, file) == 1 && !memcmp(head.magic, "nocvkpc", 8) && head.bytes < MOST_CACHE &&
         (data = noc_alloc((size_t)head.bytes + 1)) &&
         (fread(data, 1, (size_t)head.bytes + 1, file) != head.bytes || sum_of(data, (size_t)head.bytes) != head.sum)) {
         free(data);
@@ -93,7 +107,8 @@ static void *read_cache(const vk_device *d, size_t *bytes) {
 /* Nothing is reported where it fails: the next process compiles again. */
 static void write_cache(vk_device *d) {
     size_t bytes = 0;
-    if (vkGetPipelineCacheData(d->device, d->cache, &bytes, NULL) != VK_SUCCESS || bytes <= 32) /* a head alone */
+    if (vkGetPipelineCacheData(d->device, d->cache, &bytes, NULL) != VK_SUCCESS || bytes <= 32 || /* a head alone */
+        bytes >= MOST_CACHE)
         return;
     unsigned char *data = noc_alloc(bytes);
     char *path = cache_path(d, true);
