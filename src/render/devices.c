@@ -79,6 +79,12 @@ const noc_device_info *noc_best_gpu(const noc_device_info *list, size_t count) {
     return found && found->kind > NOC_DEVICE_SOFTWARE ? found : NULL;
 }
 
+/* Numbers are of a model, before what drivers say of themselves: not 256 of "llvmpipe (LLVM 15.0.6, 256 bits)". */
+static bool in_name(const char *name, const char *part) {
+    const char *at = strcasestr(name, part), *said = strstr(name, " (");
+    return at && !(said && at > said && !part[strspn(part, "0123456789")]);
+}
+
 /* Returns the device of this number, of this name, or with this part in its name, usable ones before others. NULL:
  * none. *several: more than one that is usable. Greater numbers than devices can have are parts of names: 3060. */
 static const noc_device_info *named(const noc_device_info *list, size_t count, const char *wanted, bool *several) {
@@ -89,7 +95,7 @@ static const noc_device_info *named(const noc_device_info *list, size_t count, c
     for (int part = 0; part < 2 && !found; part++)
         for (size_t i = 0; i < count; i++) {
             const char *name = list[i].name;
-            if (numbered ? list[i].number != number : part ? !strcasestr(name, wanted) : strcasecmp(name, wanted))
+            if (numbered ? list[i].number != number : part ? !in_name(name, wanted) : strcasecmp(name, wanted))
                 continue;
             *several |= found && found->usable && list[i].usable;
             if (!found || (list[i].usable && !found->usable))

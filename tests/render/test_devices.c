@@ -48,6 +48,8 @@ static void a_device_is_named(void **state) {
     assert_int_equal(choose(0, 5, "1", NOC_OK, m), 1);     /* a number, though names hold it, too */
     assert_int_equal(choose(0, 5, "nvidia", NOC_OK, m), 3);
     assert_int_equal(choose(0, 5, "3060", NOC_OK, m), 3);
+    assert_int_equal(choose(0, 5, "256", NOC_ERR_ARGUMENT, m), -1); /* bits of a driver */
+    assert_int_equal(choose(0, 5, "256 bits", NOC_OK, m), 1);
     assert_int_equal(choose(0, 5, "1080", NOC_ERR_UNSUPPORTED, m), -1);
     assert_int_equal(choose(0, 5, "15", NOC_ERR_ARGUMENT, m), -1); /* a number that no device has, though LLVM 15 */
     assert_int_equal(choose(0, 5, "GTX 1080", NOC_ERR_UNSUPPORTED, m), -1);

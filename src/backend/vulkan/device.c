@@ -56,7 +56,8 @@ static bool has_layer(void) {
 }
 
 static bool validates(noc_log *log) {
-    bool asked = getenv("NOCTURNE_VULKAN_VALIDATION") != NULL, has = asked && has_layer();
+    const char *value = getenv("NOCTURNE_VULKAN_VALIDATION");
+    bool asked = value && *value && strcmp(value, "0"), has = asked && has_layer();
     if (asked && !has)
         noc_warn(log, "vulkan: NOCTURNE_VULKAN_VALIDATION has no effect: no validation layer on this machine");
     return has;
