@@ -153,7 +153,8 @@ static void crossings(void **state) {
         roads[1 - turn] = road_of(GEO_ROAD_PRIMARY, 7, north, 2);
         assert_int_equal(pave(s, roads, 2).roads, 2);
         double road, path;
-        assert_true(top(s, NOC_CLASS_ROAD, 1, 1, &road) && top(s, NOC_CLASS_SIDEWALK, 1, 1, &path));
+        assert_true(top(s, NOC_CLASS_ROAD, 1, 1, &road));
+        assert_true(top(s, NOC_CLASS_SIDEWALK, 1, 1, &path));
         assert_true(road > path + 0.01);
         noc_scene_destroy(s);
     }
@@ -202,7 +203,8 @@ static void areas(void **state) {
         for (double x = -19; x < 15; x += 1.7)
             for (double y = -9; y < 12; y += 1.3) {
                 double green, ground;
-                assert_true(top(s, NOC_CLASS_GREEN, x, y, &green) && top(s, NOC_CLASS_TERRAIN, x, y, &ground));
+                assert_true(top(s, NOC_CLASS_GREEN, x, y, &green));
+                assert_true(top(s, NOC_CLASS_TERRAIN, x, y, &ground));
                 assert_true(fabs(green - ground) < 0.25); /* edges of 4 m over folds of 40 % */
             }
         noc_scene_destroy(s);

@@ -179,8 +179,8 @@ static void test_odd(void **state) {
         "'materials':7,'textures':'x','vertices-texture':{}",
         "'materials':[null,7,{}],'textures':[null,[],{'image':9}],'vertices-texture':[null,[],[1],['a','b']]",
         "'materials':[{'diffuseColor':['a',null,{}],'shininess':[]}],'default-theme-material':5",
-        "'materials':[{'diffuseColor':[1e300,-1e300,9],'specularColor':[1e300,0,0],'shininess':-1e300}],"
-        "'textures':[{'image':'sub.png'}],'vertices-texture':[[1e300,-1e300],[0,0],[0,0],[0,0]]",
+        ("'materials':[{'diffuseColor':[1e300,-1e300,9],'specularColor':[1e300,0,0],'shininess':-1e300}],"
+         "'textures':[{'image':'sub.png'}],'vertices-texture':[[1e300,-1e300],[0,0],[0,0],[0,0]]"),
     };
     static const char *const of[] = {
         "'material':{'a':{'values':[0,1,2,3,4,5]}},'texture':{'a':{'values':[[[0,0,1,2,3]],[[1,0,0,0,0]]]}}",
