@@ -217,7 +217,7 @@ static void measure_all(cpu_view *s, ray_set *set, const char *name, int rounds)
                    { "high robust", RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST } };
     printf("%s: %zu rays\n", name, set->count);
     for (int f = 0; f < FORMS; f++)
-        measure(((const embree_structure *)s->world->rays)->now.base->rtc, set, &forms[f], rounds, f == 0);
+        measure(((const embree_structure *)s->world->rays)->now.base->rtc[LAYER_SOLID], set, &forms[f], rounds, f == 0);
     for (size_t i = 0; i < sizeof(builds) / sizeof(builds[0]); i++) {
         RTCScene other = build(((const embree_device *)s->world->device->rays)->device, s->scene, builds[i].quality,
                                builds[i].flags);

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bool large = !status && (size_t)width * (size_t)height > 1 << 20; /* is read in the same way, and takes long */
     errors = 0;
     fuzz_memory(data, size);
-    status = large ? NOC_ERR_UNSUPPORTED : pixels_read(data, size, "fuzz", log, &pixels);
+    status = large ? NOC_ERR_UNSUPPORTED : pixels_read(data, size, "fuzz", 0, log, &pixels);
     fuzz_memory_back();
     FUZZ_REQUIRE(large || errors == (status != NOC_OK));
     if (!status) {

@@ -55,6 +55,10 @@ typedef struct noc_material {
     noc_class cls;
     /* From noc_scene_add_texture; 0: none. Where a mesh has uv, its albedo is this one times the texture's */
     int texture;
+    /* Share of the light that goes straight through, 0..1; the surface reflects what is left of the light times what
+     * it reflects by itself, as the alpha of glTF and the dissolve of MTL have it. A surface that emits has 0 */
+    float transmittance;
+    bool cutout; /* where its texture has holes there is no surface. A surface that emits has none */
 } noc_material;
 
 NOC_API noc_material noc_class_material(noc_class cls);
@@ -84,9 +88,10 @@ typedef enum noc_wrap {
 /* An image that surfaces have their albedo from. It is taken as it is: what light a photograph was made in stays in it.
  */
 typedef struct noc_texture {
-    int width, height;        /* pixels, 1..NOC_TEXTURE_SIDE */
-    const unsigned char *rgb; /* 3 a pixel, rows from the top; copied */
-    bool linear;              /* 255 is an albedo of 1 and all else in proportion; false: sRGB */
+    int width, height;          /* pixels, 1..NOC_TEXTURE_SIDE */
+    const unsigned char *rgb;   /* 3 a pixel, rows from the top; copied */
+    const unsigned char *holes; /* 1 a pixel: not 0 is a hole, for noc_material.cutout; copied. NULL: there are none */
+    bool linear;                /* 255 is an albedo of 1 and all else in proportion; false: sRGB */
     noc_wrap wrap;
     int leave_out; /* levels of its pyramid, the finest ones: each saves three quarters of the memory; 0..15 */
 } noc_texture;

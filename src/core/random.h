@@ -45,6 +45,7 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 #define DIM_JITTER 0u
 #define DIM_SKY 2u         /* and the next one, of frame 0: every frame goes on from there */
 #define DIM_LIST 4u        /* of a tile, not of a pixel, and of frame 0: every frame goes on from there */
+#define DIM_THROUGH 5u     /* then a number a triangle: core/through.h */
 #define DIM_ENVIRONMENT 6u /* of frame 0: every frame goes on from there */
 #define DIM_TEMPORAL 8u    /* as DIM_SPATIAL, but for the places */
 #define DIM_RAYS 16u       /* reference only: no reuse beside it */

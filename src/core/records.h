@@ -36,6 +36,7 @@
 /* Textures: core/texture.h. */
 #define TEXTURE_HEAD 32u /* words, enough for the levels of a longer side of 2^15 - 1 texels */
 #define TEXEL_THERE 0x40000000u
+#define TEXEL_HOLE 0x80000000u
 /* What is beyond the edges of an image: noc_wrap. */
 #define WRAP_REPEAT 0u
 #define WRAP_MIRROR 1u

@@ -1,4 +1,5 @@
-/* core/texel.h: an albedo in a word: the root of each channel in 10 bits, red in the lowest ones, and TEXEL_THERE. */
+/* core/texel.h: an albedo in a word: the root of each channel in 10 bits, red in the lowest ones, and TEXEL_THERE.
+ * In a texture TEXEL_HOLE, too, where a cutout's surface has a hole. */
 #ifndef CORE_TEXEL_H
 #define CORE_TEXEL_H
 

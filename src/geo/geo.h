@@ -95,6 +95,7 @@ typedef struct geo_appearance {
     bool coloured; /* albedo is told */
     float albedo[3];
     float f0, roughness; /* negative: not told */
+    float transmittance;
 } geo_appearance;
 
 #define GEO_MAX_HEADS 24 /* on one pole */

@@ -93,8 +93,9 @@ noc_status image_encode_png(byte_buffer *to, const uint8_t *rgb, int width, int 
 noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log);
 noc_status image_write_exr_channel(output *o, const noc_channel *channel, const meta_list *meta, noc_log *log);
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log);
-/* Its pixels as 8-bit sRGB, whatever is transparent in it; `out` holds the size that is expected. */
-noc_status image_read_png8(const uint8_t *data, size_t size, const char *name, noc_log *log, pixel_bytes *out);
+/* Its pixels as 8-bit sRGB, whatever is transparent in it, and its holes; `out` holds the size that is expected. */
+noc_status image_read_png8(const uint8_t *data, size_t size, const char *name, int cutoff, noc_log *log,
+                           pixel_bytes *out);
 noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, noc_log *log);
 noc_image *image_read_hdr(const uint8_t *data, size_t size, const char *name, noc_log *log);
 bool image_is_hdr(const uint8_t *data, size_t size); /* by its first six bytes */

@@ -86,16 +86,17 @@ noc_status pixels_size(const uint8_t *data, size_t size, const char *name, noc_l
     return check_size(name, log, *width, *height);
 }
 
-noc_status pixels_read(const uint8_t *data, size_t size, const char *name, noc_log *log, pixel_bytes *out) {
+noc_status pixels_read(const uint8_t *data, size_t size, const char *name, int cutoff, noc_log *log, pixel_bytes *out) {
     *out = (pixel_bytes){ 0 };
     noc_status status = pixels_size(data, size, name, log, &out->width, &out->height);
     if (!status && is_jpeg(data, size))
         status = read_jpeg(data, size, name, log, &out->width, &out->height, out);
     else if (!status)
-        status = image_read_png8(data, size, name, log, out);
+        status = image_read_png8(data, size, name, cutoff, log, out);
     if (status) {
         free(out->rgb);
-        out->rgb = NULL;
+        free(out->holes);
+        out->rgb = out->holes = NULL;
     }
     return status;
 }

@@ -18,6 +18,7 @@ typedef struct png_job {
     size_t size, at;
     noc_image *image;
     pixel_bytes *bytes; /* where 8-bit pixels are asked for, in place of an image */
+    int cutoff;         /* and of them those of a smaller alpha are holes */
     bool refused;       /* memory, to libpng, which does without it where it can */
     png_byte *buffer;   /* one row, or all of an interlaced picture */
     float *table;       /* code value to linear */
@@ -184,15 +185,23 @@ static bool plausible(png_job *job) {
     return false;
 }
 
-/* The colour, whatever shines through it. */
-static void store_bytes(uint8_t *rgb, const png_byte *row, int width, int depth) {
-    for (size_t x = 0; x < (size_t)width; x++)
-        for (size_t k = 0; k < 3; k++) {
-            uint16_t v;
-            if (depth == 16)
-                memcpy(&v, row + 8 * x + 2 * k, sizeof(v));
-            rgb[3 * x + k] = depth == 16 ? (uint8_t)(v / 257) : row[4 * x + k];
-        }
+static uint8_t byte_of(const png_byte *row, size_t channel, int depth) {
+    uint16_t v;
+    if (depth != 16)
+        return row[channel];
+    memcpy(&v, row + 2 * channel, sizeof(v));
+    return (uint8_t)(v / 257);
+}
+
+/* The colour, whatever shines through it, and where that is a hole. */
+static void store_bytes(const png_job *job, int y, const png_byte *row, int depth) {
+    size_t width = (size_t)job->bytes->width, first = (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        for (size_t k = 0; k < 3; k++)
+            job->bytes->rgb[3 * (first + x) + k] = byte_of(row, 4 * x + k, depth);
+        if (job->bytes->holes)
+            job->bytes->holes[first + x] = byte_of(row, 4 * x + 3, depth) < job->cutoff;
+    }
 }
 
 /* What Nocturne's writers tell of a picture, before its pixels. */
@@ -218,9 +227,11 @@ static bool make_room(png_job *job, int width, int height, int depth) {
         if (width != job->bytes->width || height != job->bytes->height)
             png_error(job->png, "two heads");
         job->bytes->rgb = noc_alloc_large((size_t)width * (size_t)height, 3);
-        if (!job->bytes->rgb)
+        bool holes = job->bytes->rgb && job->cutoff;
+        job->bytes->holes = holes ? noc_alloc_large((size_t)width * (size_t)height, 1) : NULL;
+        if (!job->bytes->rgb || (holes && !job->bytes->holes))
             job->status = noc_no_memory(job->log, job->name);
-        return job->bytes->rgb;
+        return job->status == NOC_OK;
     }
     job->image = noc_image_create(width, height, job->log);
     if (!job->image) {
@@ -265,7 +276,7 @@ static void read_pixels(png_job *job) {
         png_byte *row = job->buffer + (rows > 1 ? (size_t)y : 0) * row_bytes;
         png_read_row(job->png, row, NULL);
         if (job->bytes)
-            store_bytes(job->bytes->rgb + (size_t)y * (size_t)width * 3, row, width, depth);
+            store_bytes(job, y, row, depth);
         else
             store_row(job->image->rgb + (size_t)y * (size_t)width * 3, row, width, depth, job->table);
     }
@@ -288,9 +299,15 @@ static noc_status read_all(png_job *job) {
     return job->status;
 }
 
-noc_status image_read_png8(const uint8_t *data, size_t size, const char *name, noc_log *log, pixel_bytes *out) {
-    png_job job = { .name = name, .log = log, .data = data, .size = size, .bytes = out };
-    return read_all(&job);
+noc_status image_read_png8(const uint8_t *data, size_t size, const char *name, int cutoff, noc_log *log,
+                           pixel_bytes *out) {
+    png_job job = { .name = name, .log = log, .data = data, .size = size, .bytes = out, .cutoff = cutoff };
+    noc_status status = read_all(&job);
+    if (out->holes && !memchr(out->holes, 1, (size_t)out->width * (size_t)out->height)) {
+        free(out->holes);
+        out->holes = NULL;
+    }
+    return status;
 }
 
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log) {

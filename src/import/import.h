@@ -59,6 +59,7 @@ double noc_stream_progress(const noc_stream *s);                       /* share 
 /* x3d.c: a diffuse colour, which is a display's as other programs take it; a specular colour and shininess, 0..1. */
 void import_x3d_colour(geo_appearance *a, const double rgb[3]);
 void import_x3d_gloss(geo_appearance *a, const double specular[3], double shininess);
+void import_x3d_transparency(geo_appearance *a, double transparency);
 
 /* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working
  * one. */
@@ -73,6 +74,7 @@ FILE *import_open_named(const char *folder, const char *name, bool anywhere, siz
 typedef struct mesh_image {
     const char *name; /* of its file, as the file that is read has it; of one that lies in that, for messages */
     noc_wrap wrap;
+    uint8_t cutoff;            /* where its alpha is smaller the surface has holes */
     float albedo[3];           /* that it is times */
     const unsigned char *data; /* size bytes that lie in the file that is read, copied; NULL: it is a file beside it */
     size_t size;

@@ -19,6 +19,10 @@ void import_x3d_colour(geo_appearance *a, const double rgb[3]) {
     }
 }
 
+void import_x3d_transparency(geo_appearance *a, double transparency) {
+    a->transmittance = isfinite(transparency) ? (float)NOC_CLAMP(transparency, 0, 1) : 0;
+}
+
 /* The exponent of a Phong lobe as alpha of GGX: Walter et al. 2007, "Microfacet Models for Refraction through Rough
  * Surfaces", Beckmann's 2 / alpha^2 - 2. */
 void import_x3d_gloss(geo_appearance *a, const double specular[3], double shininess) {

@@ -108,8 +108,9 @@ typedef struct noc_backend {
     noc_status (*cast)(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
     /* tree: lights are drawn from one. */
     noc_status (*ask)(void *view, const noc_render_params *params, bool tree, noc_asking *out);
-    /* Of each whether nothing is in the way, in the scene as `ask` has found it. Any number of threads may call it. */
-    void (*clear)(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
+    /* Of each how much arrives, 0 where something is in the way, in the scene as `ask` has found it. Any number of
+     * threads may call it. */
+    void (*clear)(void *view, const noc_sight *sights, size_t count, float *clear);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else, and
      * forgets them. floor is NULL: it only forgets them. */
     void (*record)(void *view, bool on);

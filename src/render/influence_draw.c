@@ -40,21 +40,22 @@ typedef struct drawing {
 /* ---- rays ---- */
 
 static void flush(drawing *d) {
-    uint8_t clear[ROOM];
+    float clear[ROOM];
     ranking_batch *b = d->b;
     if (d->count)
         d->r->view->backend->clear(d->r->view->state, d->sights, d->count, clear);
     b->rays += d->count;
     for (size_t i = 0; i < d->count; i++) {
         const ask *a = &d->asks[i];
-        if (!clear[i])
+        double lux = a->lux * clear[i];
+        if (!(clear[i] > 0))
             continue;
-        b->all += a->lux;
-        b->lux[a->cls] += a->lux;
-        b->luminance += a->luminance;
+        b->all += lux;
+        b->lux[a->cls] += lux;
+        b->luminance += a->luminance * clear[i];
         if (a->emitter == NOC_NO_EMITTER)
-            b->sky += a->lux;
-        else if (!noc_sums_add(&b->sums, a->emitter, a->lux))
+            b->sky += lux;
+        else if (!noc_sums_add(&b->sums, a->emitter, lux))
             b->refused = true;
     }
     d->count = 0;

@@ -144,6 +144,7 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
         return status;
+    v->history.surfaces &= !v->scene->lets_through; /* each frame meets other surfaces */
     noc_history_begin(&v->history, camera, p, v->scene->versions.commits, &frame);
     noc_make_frame_environment(v->scene, p, &frame.constants);
     noc_plan_make(p, map, frame.history_set, frame.gbuffer == frame.previous_gbuffer, &plan);

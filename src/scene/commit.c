@@ -274,11 +274,13 @@ static void apply_materials(commit *c, size_t count) {
         s->materials.data[m->material] = was; /* other meshes are yet to be told apart */
     }
     for (size_t i = 0; i < count; i++) {
+        s->lets_through |= noc_material_lets_through(&next[i]);
         bool fresh = i >= s->materials.len;
         noc_material *have = &s->materials.data[i];
         noc_material_record record = noc_material_record_of(&next[i]);
         if (!fresh && !memcmp(&record, &s->material_records.data[i], sizeof(record)) && have->cls == next[i].cls &&
-            have->two_sided == next[i].two_sided && have->texture == next[i].texture)
+            have->two_sided == next[i].two_sided && have->texture == next[i].texture &&
+            have->transmittance == next[i].transmittance && have->cutout == next[i].cutout)
             continue;
         c->changes.ground_left |= !fresh && (have->cls != next[i].cls || have->cls == NOC_CLASS_LAMP);
         c->changes.materials = true;

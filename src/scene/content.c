@@ -34,7 +34,11 @@ static content_hash add_material(content_hash h, const noc_material *m) {
     noc_material_record r = noc_material_record_of(m);
     uint32_t cls = m->cls;
     memset(r.emission, 0, sizeof(r.emission));
-    return add(add(h, &r, sizeof(r)), &cls, sizeof(cls));
+    h = add(add(h, &r, sizeof(r)), &cls, sizeof(cls));
+    uint32_t cutout = m->cutout;
+    if (noc_material_lets_through(m))
+        h = add(add(h, &m->transmittance, sizeof(m->transmittance)), &cutout, sizeof(cutout));
+    return h;
 }
 
 /* The lights that triangles show, run by run: those of the world by what they are, a model's by number. */

@@ -34,6 +34,8 @@ noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_mate
         wrong = "the scene has no such material, or it is not committed yet";
     else if (!wrong && (m->cls == NOC_CLASS_CLOSURE) != (scene->materials.data[material].cls == NOC_CLASS_CLOSURE))
         wrong = "a closure stays one, and nothing else becomes one";
+    else if (!wrong && noc_material_lets_through(m) != noc_material_lets_through(&scene->materials.data[material]))
+        wrong = "a surface that lets light through stays one, and no other becomes one";
     else if (!wrong && lights_model(scene, material, m))
         wrong = "a model is made of it, so its emission stays";
     if (wrong)

@@ -3,7 +3,8 @@
 
 typedef struct kept_material {
     float albedo[3], f0, roughness, emission[3];
-    uint32_t two_sided, cls, of_lights, texture;
+    uint32_t two_sided, cls, of_lights, texture, cutout;
+    float transmittance;
 } kept_material;
 
 static kept_material keep(const noc_material *m) {
@@ -11,7 +12,9 @@ static kept_material keep(const noc_material *m) {
                         .roughness = m->roughness,
                         .two_sided = m->two_sided,
                         .cls = m->cls,
-                        .texture = (uint32_t)m->texture };
+                        .texture = (uint32_t)m->texture,
+                        .cutout = m->cutout,
+                        .transmittance = m->transmittance };
     memcpy(k.albedo, m->albedo, sizeof(k.albedo));
     memcpy(k.emission, m->emission, sizeof(k.emission));
     return k;
@@ -20,6 +23,8 @@ static kept_material keep(const noc_material *m) {
 static noc_material kept(const kept_material *k) {
     noc_material m = { .f0 = k->f0, .roughness = k->roughness, .two_sided = k->two_sided != 0 };
     m.cls = (noc_class)NOC_MIN(k->cls, (uint32_t)NOC_CLASS_COUNT);
+    m.transmittance = k->transmittance;
+    m.cutout = k->cutout != 0;
     m.texture = (int)NOC_MIN(k->texture, (uint32_t)INT32_MAX);
     memcpy(m.albedo, k->albedo, sizeof(m.albedo));
     memcpy(m.emission, k->emission, sizeof(m.emission));
@@ -68,6 +73,7 @@ noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
         noc_material m = kept(&k[i]);
         if (noc_material_fault(s, &m))
             return noct_wrong(f, "material %zu: %s", i, noc_material_fault(s, &m));
+        s->lets_through |= noc_material_lets_through(&m);
         s->materials.data[s->materials.len++] = m;
         s->material_records.data[s->material_records.len++] = noc_material_record_of(&m);
         s->material_uses.data[s->material_uses.len++] = k[i].of_lights ? 0 : NOC_NOT_OF_LIGHTS;

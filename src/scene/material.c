@@ -70,6 +70,11 @@ static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; }
 const char *noc_material_fault(const noc_scene *scene, const noc_material *m) {
     if (m->texture < 0 || (size_t)m->texture > scene->textures.len)
         return "there is no such texture";
+    bool emits = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
+    if (!in_range(m->transmittance, 0, 1))
+        return "transmittance must be in 0..1";
+    if (emits && noc_material_lets_through(m))
+        return "a surface that emits lets no light through";
     bool ok = in_range(m->f0, 0, 1) && in_range(m->roughness, 0.05f, 1) && (unsigned)m->cls < NOC_CLASS_COUNT;
     for (int i = 0; i < 3; i++)
         ok = ok && in_range(m->albedo[i], 0, 1) && in_range(m->emission[i], 0, 1e12f);
@@ -108,6 +113,8 @@ static int add_material(noc_scene *scene, const noc_material *m, uint32_t uses) 
     to->materials.data[to->materials.len++] = *m;
     to->material_records.data[to->material_records.len++] = noc_material_record_of(m);
     to->material_uses.data[to->material_uses.len++] = uses;
+    if (to == scene)
+        scene->lets_through |= noc_material_lets_through(m); /* else its commit sees to it: frames ask */
     return (int)noc_scene_material_count(scene) - 1;
 }
 

@@ -288,6 +288,7 @@ struct noc_scene {
     uint32_t class_said;                     /* bits of classes that were set as a whole: */
     noc_material class_looks[NOC_CLASS_COUNT];
     bool committed;
+    bool lets_through; /* a material does; once it is true it stays */
     noc_scene_versions versions;
     noc_range dirty_lights, dirty_materials; /* records that the last commit that changed anything wrote or added */
     /* What is staged: the editing thread's alone. Before the first commit meshes, materials and lights go straight
@@ -324,9 +325,15 @@ size_t noc_scene_city_triangle(const noc_scene *s, size_t i);
 static inline bool noc_mesh_in_city(const noc_scene *s, const noc_scene_mesh *m) {
     return !m->removed && !m->model && !(s->backdrop_count && m->first_triangle == s->backdrop_first);
 }
+/* Is there something behind its surface to be seen? It stays so. */
+static inline bool noc_material_lets_through(const noc_material *m) { return m->transmittance > 0 || m->cutout; }
 /* Is it of closures, which are counted and that is all? A material stays a closure, and others never become one. */
 static inline bool noc_mesh_closes(const noc_scene *s, const noc_scene_mesh *m) {
     return s->materials.data[m->material].cls == NOC_CLASS_CLOSURE;
+}
+/* Is it of panes, which rays pass in part? */
+static inline bool noc_mesh_lets_through(const noc_scene *s, const noc_scene_mesh *m) {
+    return noc_material_lets_through(&s->materials.data[m->material]);
 }
 /* Triangles behind all gaps that are no city's; room for one gap was reserved. */
 void noc_scene_add_gap(noc_scene *s, size_t first, size_t count);

@@ -37,25 +37,30 @@ static uint32_t pack(const float rgb[3]) {
 
 static int half_of(int side) { return NOC_MAX(side / 2, 1); }
 
-/* The next coarser level, by area. */
+/* The next coarser level, by area. What has more holes than surface becomes one; colours are those of the surface. */
 static void halve(const uint32_t *from, int width, int height, uint32_t *to) {
     const float unit = 1.0f / 1023;
     for (int y = 0; y < half_of(height); y++) {
         tap rows = tap_of(y, height, half_of(height));
         for (int x = 0; x < half_of(width); x++) {
             tap columns = tap_of(x, width, half_of(width));
-            float sum[3] = { 0 };
+            float sum[3] = { 0 }, holed[3] = { 0 }, holes = 0;
             for (int i = 0; i < 9; i++) {
                 float share = rows.share[i / 3] * columns.share[i % 3];
                 if (!(share > 0))
                     continue;
                 uint32_t p = from[(size_t)(rows.first + i / 3) * (size_t)width + (size_t)(columns.first + i % 3)];
+                bool hole = p & TEXEL_HOLE;
+                holes += hole ? share : 0;
                 for (int c = 0; c < 3; c++) {
                     float root = (float)(p >> 10 * c & 1023) * unit;
-                    sum[c] += root * root * share;
+                    *(hole ? &holed[c] : &sum[c]) += root * root * share;
                 }
             }
-            *to++ = pack(sum);
+            bool all = !(holes < 1 - 1e-4f);
+            for (int c = 0; c < 3 && holes > 0; c++)
+                sum[c] = all ? holed[c] : NOC_MIN(sum[c] / (1 - holes), 1);
+            *to++ = pack(sum) | (holes > 0.5f ? TEXEL_HOLE : 0);
         }
     }
 }
@@ -100,7 +105,8 @@ static uint32_t *first_level(uint32_t *whole, const noc_texture *t, int *width, 
     *height = t->height;
     size_t count = (size_t)t->width * (size_t)t->height;
     for (size_t i = 0; i < count; i++)
-        whole[i] = code[0][t->rgb[3 * i]] | code[1][t->rgb[3 * i + 1]] | code[2][t->rgb[3 * i + 2]];
+        whole[i] = code[0][t->rgb[3 * i]] | code[1][t->rgb[3 * i + 1]] | code[2][t->rgb[3 * i + 2]] |
+                   (t->holes && t->holes[i] ? TEXEL_HOLE : 0);
     for (int i = 0; i < t->leave_out; i++) {
         uint32_t *half = i % 2 ? whole : whole + count;
         halve(i % 2 ? whole + count : whole, *width, *height, half);

@@ -70,7 +70,7 @@ static inline void answer_closest(const twins *t, const hit_numbers *numbers, co
     uint32_t valid = 0;
     for (int l = 0; l < BLOCK; l++)
         valid |= (uint32_t)(wanted[l] == VK_ANSWER_WANTED) << l;
-    w->device->tracer->closest(w->rays, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);
+    w->device->tracer->closest(w->rays, NOC_RAYS_NOW, rays, INFINITY, valid, true, NULL, &h);
     for (int l = 0; l < BLOCK; l++) {
         out[0][l] = NO_HIT;
         if (h.triangle[l] == NO_HIT)

@@ -32,7 +32,7 @@ static double worst_of(noc_image_codec codec, int quality) {
     size_t size;
     pixel_bytes got;
     assert_int_equal(noc_image_encode_srgb8(encoder, codec, quality, picture, W, H, &data, &size), NOC_OK);
-    assert_int_equal(pixels_read(data, size, "again", log_, &got), NOC_OK);
+    assert_int_equal(pixels_read(data, size, "again", 0, log_, &got), NOC_OK);
     assert_int_equal(got.width, W);
     assert_int_equal(got.height, H);
     double sum = 0;

@@ -158,6 +158,43 @@ static void test_accessors(void **state) {
     }
 }
 
+/* Alpha is what a surface takes of the light; glass of a transmission lets that share of what it does not reflect
+ * through in its colour. */
+static void test_transparency(void **state) {
+    static const struct {
+        const char *material;
+        float transmittance;
+    } rows[] = {
+        { "\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0.75f },
+        { "\"alphaMode\": \"OPAQUE\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
+        { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
+        { "\"alphaMode\": \"MASK\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 1 },
+        { "\"alphaMode\": \"MASK\", \"alphaCutoff\": 0.2, \"pbrMetallicRoughness\": {\"baseColorFactor\": "
+          "[1, 1, 1, 0.25]}",
+          0 },
+        { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1], \"metallicFactor\": 0}, "
+          "\"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 0.8}}",
+          0.8f * 0.5f * 0.96f },
+        { "\"alphaMode\": \"BLEND\", \"emissiveFactor\": [1, 1, 1], \"pbrMetallicRoughness\": "
+          "{\"baseColorFactor\": [1, 1, 1, 0.25]}",
+          0 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        loaded l;
+        char *text = noc_format(
+            "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0}]}], "
+            "\"materials\": [{%s}],\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],",
+            rows[i].material);
+        load_text(&l, file_text(VIEWS ACCESSORS, text));
+        assert_string_equal(l.error, "");
+        assert_float_equal(l.scene->materials.data[0].transmittance, rows[i].transmittance, 1e-6);
+        assert_false(l.scene->materials.data[0].cutout);
+        assert_int_equal(skipped_count(&l, "transparent material that emits"), i + 1 == NOC_COUNT(rows));
+        unload(&l);
+        free(text);
+    }
+}
+
 static void test_materials(void **state) {
     loaded l;
     load_text(
@@ -189,7 +226,7 @@ static void test_materials(void **state) {
     assert_false(m[1].two_sided);
     assert_float_equal(m[2].emission[0], 0, 0);
     assert_int_equal(skipped_count(&l, "emission by a texture"), 1);
-    assert_int_equal(skipped_count(&l, "transparent"), 1);
+    assert_true(m[2].transmittance == 0 && !m[2].cutout); /* its alpha is 1 */
     assert_int_equal(noc_scene_commit(l.scene), NOC_OK);
     assert_int_equal(l.scene->lights.len, 2);
     for (int i = 0; i < 2; i++)
@@ -343,9 +380,10 @@ static void test_probe(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nodes),     cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
-        cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_cones),
-        cmocka_unit_test(test_camera),    cmocka_unit_test(test_probe),      cmocka_unit_test(test_roots),
+        cmocka_unit_test(test_nodes),        cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
+        cmocka_unit_test(test_transparency), cmocka_unit_test(test_materials),  cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_cones),        cmocka_unit_test(test_camera),     cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_roots),
     };
     return cmocka_run_group_tests_name("import/gltf", tests, set_up, tear_down);
 }

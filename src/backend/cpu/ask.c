@@ -15,9 +15,10 @@ noc_status noc_cpu_ask(void *state, const noc_render_params *p, bool tree, noc_a
     return status;
 }
 
-void noc_cpu_clear(void *state, const noc_sight *sights, size_t count, uint8_t *clear) {
+void noc_cpu_clear(void *state, const noc_sight *sights, size_t count, float *clear) {
     const cpu_world *w = ((cpu_view *)state)->world;
     shadow_block blocks[MANY_BLOCKS];
+    float through[MANY_BLOCKS][BLOCK];
     for (size_t first = 0; first < count; first += (size_t)MANY_BLOCKS * BLOCK) {
         int used = 0;
         for (; used < MANY_BLOCKS && first + (size_t)used * BLOCK < count; used++) {
@@ -34,7 +35,10 @@ void noc_cpu_clear(void *state, const noc_sight *sights, size_t count, uint8_t *
             }
         }
         w->device->tracer->occluded(w->rays, NOC_RAYS_NOW, blocks, used);
-        for (int i = 0; i < used * BLOCK && first + (size_t)i < count; i++)
-            clear[first + (size_t)i] = blocks[i / BLOCK].unoccluded >> i % BLOCK & 1;
+        bool weak = w->device->tracer->through(w->rays, blocks, used, through);
+        for (int i = 0; i < used * BLOCK && first + (size_t)i < count; i++) {
+            bool arrives = blocks[i / BLOCK].unoccluded >> i % BLOCK & 1;
+            clear[first + (size_t)i] = !arrives ? 0 : weak ? through[i / BLOCK][i % BLOCK] : 1;
+        }
     }
 }

@@ -27,7 +27,7 @@ void noc_cpu_light_stats(void *view, noc_light_stats *stats);
 noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes);
 noc_status noc_cpu_cast(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
 noc_status noc_cpu_ask(void *view, const noc_render_params *params, bool tree, noc_asking *out);
-void noc_cpu_clear(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
+void noc_cpu_clear(void *view, const noc_sight *sights, size_t count, float *clear);
 void noc_cpu_record(void *view, bool on);
 noc_status noc_cpu_replay(void *view, noc_trace_floor *floor);
 

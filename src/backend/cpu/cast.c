@@ -110,7 +110,7 @@ static void cast_block(const casting *c, size_t first) {
         far = fmaxf(far, (float)ray->far);
     }
     uint32_t valid = (1u << count) - 1;
-    c->world->device->tracer->closest(c->world->rays, NOC_RAYS_NOW, &rays, far, valid, false, &hits);
+    c->world->device->tracer->closest(c->world->rays, NOC_RAYS_NOW, &rays, far, valid, false, NULL, &hits);
     for (int l = 0; l < count; l++) {
         noc_hit *out = &c->hits[first + (size_t)l];
         *out = (noc_hit){ .material = -1, .object = -1, .instance = -1, .light = -1 };

@@ -220,9 +220,14 @@ noc_frame_blocks noc_cpu_blocks(const cpu_view *s, int gbuffer);
 /* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
  * Counts rays where each block says, and keeps them when recording. */
 void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count);
+/* Transmittance of the unoccluded segments of up to MANY_BLOCKS blocks. False, and nothing is written: no surface of
+ * the scene lets light through. */
+bool noc_cpu_through(const cpu_view *s, const shadow_block *blocks, int count, float (*out)[BLOCK]);
 /* Traces camera rays and stores the receivers that they find in block `at` of the G-buffer, with their instances, and
- * their objects and walls for the views that ask for these. Lanes outside `valid` find nothing. */
-void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint32_t valid, size_t at);
+ * their objects and walls for the views that ask for these. Lanes outside `valid` find nothing. chance: the pixels'
+ * keys, as noc_tracer.closest has them. */
+void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, const uint32_t *chance, uint32_t valid,
+                     size_t at);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
 noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor);
 

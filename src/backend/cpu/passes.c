@@ -55,9 +55,12 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
     const frame_buffers *b = &run->s->b;
     const v3 eye = splat3(run->ctx.frame->camera.eye);
     rayblock rays;
-    for (int l = 0; l < BLOCK; l++)
+    uint32_t chance[BLOCK];
+    for (int l = 0; l < BLOCK; l++) {
         ray_store(&rays, l, eye, frame_direction(&run->ctx, lane_x(bx * BLOCK_SIDE, l), lane_y(by * BLOCK_SIDE, l)));
-    noc_cpu_primary(run, w, &rays, lanes_inside(b, bx, by), block_at(b, bx, by));
+        chance[l] = run->s->scene->lets_through ? key_of(&run->ctx, bx * BLOCK_SIDE, by * BLOCK_SIDE, l) : 0;
+    }
+    noc_cpu_primary(run, w, &rays, chance, lanes_inside(b, bx, by), block_at(b, bx, by));
 }
 
 /* Receivers that are given: no instance shows them. */
@@ -244,6 +247,14 @@ static void visibility(stage_run *run, worker *w, tile t) {
     noc_cpu_resolve(run, w, at, n);
 }
 
+/* Samples of which only a share counts. */
+static const rblock *weaken(const rblock *r, const float share[BLOCK], rblock *out) {
+    *out = *r;
+    for (int l = 0; l < BLOCK; l++)
+        out->w[l] *= share[l];
+    return out;
+}
+
 /* Emitters seen directly begin the block's colour; seen: the lanes that see one. */
 static void show_emitters(const stage_run *run, const gblock *g, uint16_t *seen, cblock *c) {
     uint32_t lanes = 0;
@@ -289,45 +300,51 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
                 noc_cpu_gather_segments(run, w, block->at, lanes[i], g, r[i].light, r[i].u, r[i].v);
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-        for (uint32_t i = 0; i < n; i++)
+        float through[MANY_BLOCKS][BLOCK];
+        bool weak = rays && noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
+        for (uint32_t i = 0; i < n; i++) {
+            rblock part;
+            const rblock *shaded = weak ? weaken(&r[i], through[i], &part) : &r[i];
             dropped |=
-                noc_cpu_shade_samples(run, g, &r[i], NULL, rays ? w->batch.blocks[i].unoccluded : lanes[i], block->at);
+                noc_cpu_shade_samples(run, g, shaded, NULL, rays ? w->batch.blocks[i].unoccluded : lanes[i], block->at);
+        }
     }
     return dropped;
 }
 
-/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. share: what of each
- * pixel's light is its sample's; NULL: all. */
+/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once; to all of them where
+ * surfaces let light through, since how much is not known of any. share: what of each pixel's light is its sample's;
+ * NULL: all. */
 static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n, const float (*share)[BLOCK]) {
     frame_buffers *b = &run->s->b;
     const gblock *g = b->g[run->frame->gbuffer];
     const rblock *r = b->r[run->stage->target];
+    const uint16_t *visible = run->s->scene->lets_through ? NULL : b->visible[run->stage->target];
     uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS], asked[TILE_BLOCKS * TILE_BLOCKS];
+    float through[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     w->batch.count = 0;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
         lanes[i] = lanes_with_sample(&r[at]);
-        asked[i] =
-            run->ctx.frame->flags & FRAME_FINAL_RAY ? lanes_that_ask(&r[at], b->visible[run->stage->target][at]) : 0;
+        asked[i] = run->ctx.frame->flags & FRAME_FINAL_RAY ? lanes_that_ask(&r[at], visible ? visible[at] : 0) : 0;
         if (asked[i])
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-    const shadow_block *answer = w->batch.blocks;
-    for (int i = 0; i < n; i++) {
+    bool weak = noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
+    for (int i = 0, answer = 0; i < n; i++) {
         size_t at = blocks[i].at;
-        if (asked[i])
-            lanes[i] = (lanes[i] & ~asked[i]) | answer++->unoccluded;
-        if (!lanes[i])
-            continue;
-        rblock part;
-        if (share) {
-            part = r[at];
-            for (int l = 0; l < BLOCK; l++)
-                part.w[l] *= share[i][l];
+        rblock part, mixed;
+        const rblock *shaded = &r[at];
+        if (asked[i]) {
+            lanes[i] = (lanes[i] & ~asked[i]) | w->batch.blocks[answer].unoccluded;
+            shaded = weak ? weaken(shaded, through[answer], &part) : shaded;
+            answer++;
         }
-        w->dropped += (uint64_t)__builtin_popcount(
-            noc_cpu_shade_samples(run, &g[at], share ? &part : &r[at], NULL, lanes[i], at));
+        if (share)
+            shaded = weaken(shaded, share[i], &mixed);
+        if (lanes[i])
+            w->dropped += (uint64_t)__builtin_popcount(noc_cpu_shade_samples(run, &g[at], shaded, NULL, lanes[i], at));
     }
 }
 
@@ -416,9 +433,13 @@ static void sky(stage_run *run, worker *w, tile t) {
             memset(s->light, 0, sizeof(s->light));
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
+        float through[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
+        bool weak = noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
         for (int i = 0; i < w->batch.count; i++) {
             const shadow_block *s = &w->batch.blocks[i];
             size_t at = asked[i];
+            for (int l = 0; weak && l < BLOCK; l++)
+                share[i][l] *= through[i][l];
             if (s->unoccluded)
                 w->dropped +=
                     (uint64_t)__builtin_popcount(noc_cpu_shade_sky(run, &g[at], &s->rays, share[i], s->unoccluded, at));

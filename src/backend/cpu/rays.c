@@ -82,17 +82,22 @@ static void gather_hit(const noc_scene *scene, const hitblock *h, int l, struck_
 }
 
 static void closest(const cpu_world *world, noc_ray_world in, const rayblock *rays, float far, uint32_t valid,
-                    bool coherent, hitblock *hits) {
-    world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, hits);
+                    bool coherent, const uint32_t *chance, hitblock *hits) {
+    world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, chance, hits);
 }
 
-void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, uint32_t valid, size_t at) {
+bool noc_cpu_through(const cpu_view *s, const shadow_block *blocks, int count, float (*out)[BLOCK]) {
+    return s->world->device->tracer->through(s->world->rays, blocks, count, out);
+}
+
+void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, const uint32_t *chance, uint32_t valid,
+                     size_t at) {
     cpu_view *s = run->s;
     hitblock h;
     struck_block found = { 0 };
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
     keep(s, w, rays, NULL, valid, 1, true);
-    closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);
+    closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, chance, &h);
     if (s->b.instance)
         memcpy(s->b.instance[at], h.instance, sizeof(h.instance));
     for (int l = 0; l < BLOCK; l++)
@@ -108,7 +113,7 @@ void noc_cpu_probe(void *user, noc_probes *p) {
     hitblock h;
     memcpy(rays.o, p->o, sizeof(rays.o));
     memcpy(rays.d, p->d, sizeof(rays.d));
-    closest(user, NOC_RAYS_STANDING, &rays, 1, 0xffff, false, &h); /* what moves is not remembered */
+    closest(user, NOC_RAYS_STANDING, &rays, 1, 0xffff, false, NULL, &h); /* what moves is not remembered */
     for (int l = 0; l < BLOCK; l++)
         p->t[l] = h.triangle[l] != NO_HIT ? h.t[l] : 1;
 }
@@ -133,7 +138,7 @@ static void replay_run(void *ctx, size_t item, int index) {
         int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);
         if (p->primary) {
             hitblock hits;
-            closest(r->s->world, NOC_RAYS_NOW, &p->block.rays, INFINITY, p->block.valid, true, &hits);
+            closest(r->s->world, NOC_RAYS_NOW, &p->block.rays, INFINITY, p->block.valid, true, NULL, &hits);
         } else {
             for (int i = 0; i < n; i++)
                 many[i] = p[i].block;

@@ -28,7 +28,7 @@ typedef struct hitblock {
 typedef enum noc_ray_world {
     NOC_RAYS_NOW,      /* the scene as it is */
     NOC_RAYS_PAST,     /* as it was before the structure followed it last */
-    NOC_RAYS_STANDING, /* what stands as long as nothing is removed: no instances */
+    NOC_RAYS_STANDING, /* what blocks light as long as nothing is removed: no instances, nothing that lets it through */
 } noc_ray_world;
 
 typedef struct noc_tracer {
@@ -43,11 +43,15 @@ typedef struct noc_tracer {
      * traced meanwhile. */
     noc_status (*follow)(void *structure);
     size_t (*bytes)(const void *structure);
-    /* coherent: the rays are a camera's. far: tfar of all rays. */
+    /* coherent: the rays are a camera's. far: tfar of all rays. chance: a key a ray, by which it passes surfaces that
+     * let light through (core/through.h); NULL: it meets them all but for their holes. */
     void (*closest)(void *structure, noc_ray_world in, const rayblock *rays, float far, uint32_t valid, bool coherent,
-                    hitblock *hits);
-    /* Sets `clear` of up to MANY_BLOCKS blocks. */
+                    const uint32_t *chance, hitblock *hits);
+    /* Sets `unoccluded` of up to MANY_BLOCKS blocks. Surfaces that let light through block nothing. */
     void (*occluded)(void *structure, noc_ray_world in, shadow_block *blocks, int count);
+    /* Transmittance of unoccluded segments of the scene as it is. False, and nothing is written: no surface of it lets
+     * light through. */
+    bool (*through)(void *structure, const shadow_block *blocks, int count, float (*out)[BLOCK]);
 } noc_tracer;
 
 #endif

@@ -143,32 +143,70 @@ static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
     }
 }
 
-static uint32_t first_of(const embree_part *part, uint32_t geometry) { return part->first.data[geometry]; }
+static void no_hits(struct RTCRayHit16 *h) {
+    memset(h->hit.geomID, 0xff, sizeof(h->hit.geomID));
+    memset(h->hit.instID, 0xff, sizeof(h->hit.instID));
+}
+
+/* Of the lanes that have one. */
+static void take_hits(const embree_generation *g, embree_layer layer, const struct RTCRayHit16 *h, uint32_t valid,
+                      hitblock *hits) {
+    for (int l = 0; l < BLOCK; l++) {
+        if (!(valid >> l & 1) || h->hit.geomID[l] == RTC_INVALID_GEOMETRY_ID)
+            continue;
+        uint32_t above = h->hit.instID[0][l];
+        const embree_above *a = above != RTC_INVALID_GEOMETRY_ID ? &g->above[layer].data[above] : NULL;
+        hits->triangle[l] = h->hit.primID[l] + (a ? a->part : g->base)->first[layer].data[h->hit.geomID[l]];
+        hits->instance[l] = a ? a->instance : NO_INSTANCE;
+        hits->u[l] = h->hit.u[l];
+        hits->v[l] = h->hit.v[l];
+        hits->t[l] = h->ray.tfar[l];
+    }
+}
 
 static void closest(void *structure, noc_ray_world in, const rayblock *rays, float far, uint32_t valid, bool coherent,
-                    hitblock *hits) {
+                    const uint32_t *chance, hitblock *hits) {
     const embree_structure *s = structure;
     const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
+    const bool all = in != NOC_RAYS_STANDING;
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRayHit16 h;
-    for (int l = 0; l < BLOCK; l++)
-        lanes[l] = -(int)(valid >> l & 1);
-    fill_rays(rays, far, &h.ray);
-    memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
-    memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
-    rt_intersect16(lanes, g->base->rtc, &h, coherent);
-    if (g->top && in != NOC_RAYS_STANDING)
-        rt_intersect16(lanes, g->top, &h, coherent);
     for (int l = 0; l < BLOCK; l++) {
-        bool hit = valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID;
-        uint32_t above = h.hit.instID[0][l];
-        const embree_above *a = hit && above != RTC_INVALID_GEOMETRY_ID ? &g->above.data[above] : NULL;
-        hits->triangle[l] = hit ? h.hit.primID[l] + first_of(a ? a->part : g->base, h.hit.geomID[l]) : NO_HIT;
-        hits->instance[l] = a ? a->instance : NO_INSTANCE;
-        hits->u[l] = h.hit.u[l];
-        hits->v[l] = h.hit.v[l];
-        hits->t[l] = h.ray.tfar[l];
+        lanes[l] = -(int)(valid >> l & 1);
+        hits->triangle[l] = NO_HIT;
+        hits->instance[l] = NO_INSTANCE;
+        hits->u[l] = hits->v[l] = 0;
+        hits->t[l] = far;
     }
+    fill_rays(rays, far, &h.ray);
+    no_hits(&h);
+    rt_intersect16(lanes, g->base->rtc[LAYER_SOLID], &h, coherent);
+    if (g->top[LAYER_SOLID] && all)
+        rt_intersect16(lanes, g->top[LAYER_SOLID], &h, coherent);
+    take_hits(g, LAYER_SOLID, &h, valid, hits);
+    const RTCScene through[] = { g->base->rtc[LAYER_THROUGH], g->top[LAYER_THROUGH] };
+    if (!all || (!through[0] && !through[1]))
+        return;
+    no_hits(&h);
+    for (int i = 0; i < 2; i++)
+        if (through[i])
+            noc_embree_meet(through[i], s->scene, lanes, chance, &h);
+    take_hits(g, LAYER_THROUGH, &h, valid, hits);
+}
+
+static bool through(void *structure, const shadow_block *blocks, int count, float (*out)[BLOCK]) {
+    const embree_structure *s = structure;
+    const RTCScene layers[] = { s->now.base->rtc[LAYER_THROUGH], s->now.top[LAYER_THROUGH] };
+    if (!layers[0] && !layers[1])
+        return false;
+    for (int i = 0; i < count; i++) {
+        for (int l = 0; l < BLOCK; l++)
+            out[i][l] = 1;
+        for (int k = 0; k < 2; k++)
+            if (layers[k])
+                noc_embree_trace_through(layers[k], s->scene, &blocks[i].rays, blocks[i].unoccluded, out[i]);
+    }
+    return true;
 }
 
 /* What the base does not block is traced above it. */
@@ -176,14 +214,14 @@ static void occluded(void *structure, noc_ray_world in, shadow_block *blocks, in
     const embree_structure *s = structure;
     const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
     uint32_t valid[MANY_BLOCKS];
-    noc_embree_trace_many(g->base->rtc, blocks, count);
-    if (!g->top || in == NOC_RAYS_STANDING)
+    noc_embree_trace_many(g->base->rtc[LAYER_SOLID], blocks, count);
+    if (!g->top[LAYER_SOLID] || in == NOC_RAYS_STANDING)
         return;
     for (int i = 0; i < count; i++) {
         valid[i] = blocks[i].valid;
         blocks[i].valid = blocks[i].unoccluded;
     }
-    noc_embree_trace_many(g->top, blocks, count);
+    noc_embree_trace_many(g->top[LAYER_SOLID], blocks, count);
     for (int i = 0; i < count; i++)
         blocks[i].valid = valid[i];
 }
@@ -196,7 +234,8 @@ static const noc_tracer tracer = { .name = "embree",
                                    .follow = follow,
                                    .bytes = bytes_of,
                                    .closest = closest,
-                                   .occluded = occluded };
+                                   .occluded = occluded,
+                                   .through = through };
 
 static noc_status create(const noc_device_params *params, int number, noc_log *log, void **device) {
     return noc_cpu_device_create(&tracer, params, log, device);

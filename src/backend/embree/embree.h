@@ -20,10 +20,14 @@ typedef struct embree_device {
     embree_structure *current; /* that one: Embree tells errors and memory a device, not a scene */
 } embree_device;
 
+/* Surfaces that block light, and those that let it through, are traced one after the other: the first as if there were
+ * no others. */
+typedef enum embree_layer { LAYER_SOLID, LAYER_THROUGH, LAYERS } embree_layer;
+
 typedef struct embree_part {
     noc_part of;
-    RTCScene rtc;
-    NOC_ARRAY(uint32_t) first; /* of each geometry of rtc, its first triangle in the scene */
+    RTCScene rtc[LAYERS];              /* LAYER_THROUGH: NULL where there is none */
+    NOC_ARRAY(uint32_t) first[LAYERS]; /* of each geometry of rtc, its first triangle in the scene */
     int holders;
 } embree_part;
 
@@ -37,8 +41,8 @@ typedef struct embree_above {
 
 typedef struct embree_generation {
     embree_part *base;
-    RTCScene top;                  /* NULL: there is nothing but the base */
-    NOC_ARRAY(embree_above) above; /* by geometry of top */
+    RTCScene top[LAYERS];                  /* NULL: there is nothing but the base's */
+    NOC_ARRAY(embree_above) above[LAYERS]; /* by geometry of top */
 } embree_generation;
 
 struct embree_structure {
@@ -64,6 +68,14 @@ noc_status noc_embree_fail(embree_structure *s, enum RTCError code, const char *
 bool noc_embree_room(int threads, size_t bytes);
 /* Can TBB's threads be started? */
 bool noc_embree_room_for_threads(int threads);
+/* through.c: filters of geometries whose surfaces let light through. first: their first triangle in the scene. */
+void noc_embree_let_through(RTCGeometry geometry, size_t first);
+/* Nearest hit on the way of rays, for which `h` has one already. chance: as noc_tracer.closest. */
+void noc_embree_meet(RTCScene scene, const noc_scene *of, const int *valid, const uint32_t *chance,
+                     struct RTCRayHit16 *h);
+/* Multiplies `through` by what the scene lets through of each segment. */
+void noc_embree_trace_through(RTCScene scene, const noc_scene *of, const rayblock *rays, uint32_t valid,
+                              float through[BLOCK]);
 /* many.c: noc_tracer.occluded. Segments that lead to one light are traced side by side, the others as a stream
  * (bench/bench_rays has the gain). */
 void noc_embree_trace_many(RTCScene scene, shadow_block *blocks, int count);

@@ -24,6 +24,24 @@ static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay
     rtcOccluded16(valid, scene, rays, &args);
 }
 
+/* What filters of geometries find their ray's context in, at the beginning of what is theirs. */
+typedef struct RTCRayQueryContext rt_context;
+static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+    struct RTCIntersectArguments args;
+    rtcInitRayQueryContext(context);
+    rtcInitIntersectArguments(&args);
+    args.context = context;
+    rtcIntersect16(valid, scene, rays, &args);
+}
+
+static inline void rt_occluded16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRay16 *rays) {
+    struct RTCOccludedArguments args;
+    rtcInitRayQueryContext(context);
+    rtcInitOccludedArguments(&args);
+    args.context = context;
+    rtcOccluded16(valid, scene, rays, &args);
+}
+
 #else
 #include <embree3/rtcore.h>
 
@@ -39,6 +57,18 @@ static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded16(valid, scene, &context, rays);
+}
+
+/* What filters of geometries find their ray's context in, at the beginning of what is theirs. */
+typedef struct RTCIntersectContext rt_context;
+static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+    rtcInitIntersectContext(context);
+    rtcIntersect16(valid, scene, context, rays);
+}
+
+static inline void rt_occluded16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRay16 *rays) {
+    rtcInitIntersectContext(context);
+    rtcOccluded16(valid, scene, context, rays);
 }
 
 /* Rays of no common direction, all at once: Embree 3 takes them down its tree together, which is a third faster than

@@ -13,9 +13,11 @@
 static void let_go(embree_part *part) {
     if (!part || --part->holders)
         return;
-    if (part->rtc)
-        rtcReleaseScene(part->rtc);
-    array_free(&part->first);
+    for (int layer = 0; layer < LAYERS; layer++) {
+        if (part->rtc[layer])
+            rtcReleaseScene(part->rtc[layer]);
+        array_free(&part->first[layer]);
+    }
     free(part);
 }
 
@@ -31,12 +33,14 @@ static void release_parts(embree_parts *parts) {
 }
 
 static void release_generation(embree_generation *g) {
-    if (g->top)
-        rtcReleaseScene(g->top);
-    for (size_t i = 0; i < g->above.len; i++)
-        let_go(g->above.data[i].part);
+    for (int layer = 0; layer < LAYERS; layer++) {
+        if (g->top[layer])
+            rtcReleaseScene(g->top[layer]);
+        for (size_t i = 0; i < g->above[layer].len; i++)
+            let_go(g->above[layer].data[i].part);
+        array_free(&g->above[layer]);
+    }
     let_go(g->base);
-    array_free(&g->above);
     *g = (embree_generation){ 0 };
 }
 
@@ -64,11 +68,11 @@ static RTCScene new_scene(embree_structure *s) {
     return rtc;
 }
 
-static bool attach_triangles(embree_structure *s, embree_part *part, size_t first, size_t count) {
+static bool attach_triangles(embree_structure *s, embree_part *part, embree_layer layer, size_t first, size_t count) {
     const noc_scene *scene = s->scene;
     if (!count)
         return true;
-    if (!array_push(&part->first, (uint32_t)first))
+    if (!array_push(&part->first[layer], (uint32_t)first))
         return no_memory(s);
     RTCGeometry geometry = rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!geometry)
@@ -78,33 +82,47 @@ static bool attach_triangles(embree_structure *s, embree_part *part, size_t firs
                                scene->positions.len / 3);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 12 * first,
                                12, count);
+    if (layer == LAYER_THROUGH)
+        noc_embree_let_through(geometry, first);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(part->rtc, geometry);
+    rtcAttachGeometry(part->rtc[layer], geometry);
     rtcReleaseGeometry(geometry);
     return !s->failed;
 }
 
 /* A geometry for each run of triangles without a gap. */
-static bool build_part(embree_structure *s, uint32_t model, embree_part *part) {
+static bool build_layer(embree_structure *s, uint32_t model, embree_part *part, embree_layer layer) {
     const noc_scene *scene = s->scene;
     size_t first = 0, end = 0;
-    if (!(part->rtc = new_scene(s)))
+    if (!(part->rtc[layer] = new_scene(s)))
         return false;
     for (size_t i = part->of.first_mesh; i < part->of.end_mesh; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
-        if (!noc_part_has(scene, m, model))
+        if (!noc_part_has(scene, m, model) || noc_mesh_lets_through(scene, m) != (layer == LAYER_THROUGH))
             continue;
         if (m->first_triangle != end) {
-            if (!attach_triangles(s, part, first, end - first))
+            if (!attach_triangles(s, part, layer, first, end - first))
                 return false;
             first = m->first_triangle;
         }
         end = (size_t)m->first_triangle + m->triangle_count;
     }
-    if (!attach_triangles(s, part, first, end - first))
+    if (!attach_triangles(s, part, layer, first, end - first))
         return false;
-    rtcCommitScene(part->rtc);
+    rtcCommitScene(part->rtc[layer]);
     return !s->failed;
+}
+
+static bool lets_through(const noc_scene *scene, uint32_t model, const noc_part *part) {
+    for (size_t i = part->first_mesh; i < part->end_mesh; i++)
+        if (noc_part_has(scene, &scene->meshes.data[i], model) && noc_mesh_lets_through(scene, &scene->meshes.data[i]))
+            return true;
+    return false;
+}
+
+static bool build_part(embree_structure *s, uint32_t model, embree_part *part) {
+    return build_layer(s, model, part, LAYER_SOLID) &&
+           (!lets_through(s->scene, model, &part->of) || build_layer(s, model, part, LAYER_THROUGH));
 }
 
 /* One part of the meshes first to end, held once; NULL where it fails. */
@@ -165,39 +183,43 @@ static embree_part *part_of_model(embree_structure *s, uint32_t model) {
     return *slot;
 }
 
-static bool add_above(embree_structure *s, embree_generation *g, embree_part *part, uint32_t instance,
-                      const float transform[12]) {
+static bool add_above(embree_structure *s, embree_generation *g, embree_layer layer, embree_part *part,
+                      uint32_t instance, const float transform[12]) {
     if (!part)
         return false;
-    if (!part->of.triangles)
+    if (!part->of.triangles || !part->rtc[layer])
         return true;
-    if (!array_push(&g->above, (embree_above){ part, instance }))
+    if (!array_push(&g->above[layer], (embree_above){ part, instance }))
         return no_memory(s);
     held(part);
     RTCGeometry geometry = rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_INSTANCE);
     if (!geometry)
         return !noc_embree_fail(s, rtcGetDeviceError(s->device->device), "no instance");
-    rtcSetGeometryInstancedScene(geometry, part->rtc);
+    rtcSetGeometryInstancedScene(geometry, part->rtc[layer]);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(g->top, geometry);
+    rtcAttachGeometry(g->top[layer], geometry);
     rtcReleaseGeometry(geometry);
     return !s->failed;
 }
 
-static bool make_top(embree_structure *s, const embree_parts *world, embree_generation *g) {
+static bool make_top(embree_structure *s, const embree_parts *world, embree_layer layer, embree_generation *g) {
     static const float standing[12] = { [0] = 1, [5] = 1, [10] = 1 };
     const noc_scene *scene = s->scene;
-    bool ok = (g->top = new_scene(s)) != NULL;
+    bool ok = (g->top[layer] = new_scene(s)) != NULL;
     for (size_t i = 1; ok && i < world->len; i++)
-        ok = add_above(s, g, world->data[i], NO_INSTANCE, standing);
+        ok = add_above(s, g, layer, world->data[i], NO_INSTANCE, standing);
     for (size_t i = 0; ok && i < scene->instances.len; i++) {
         const noc_scene_instance *in = &scene->instances.data[i];
         if (in->model)
-            ok = add_above(s, g, part_of_model(s, in->model), (uint32_t)i, in->transform);
+            ok = add_above(s, g, layer, part_of_model(s, in->model), (uint32_t)i, in->transform);
     }
-    if (ok)
-        rtcCommitScene(g->top);
+    if (ok && layer == LAYER_THROUGH && !g->above[layer].len) {
+        rtcReleaseScene(g->top[layer]);
+        g->top[layer] = NULL;
+    } else if (ok) {
+        rtcCommitScene(g->top[layer]);
+    }
     return ok && !s->failed;
 }
 
@@ -217,7 +239,7 @@ static bool make_generation(embree_structure *s, const embree_parts *world, embr
         return no_memory(s);
     while (s->models.len < models)
         s->models.data[s->models.len++] = NULL;
-    return make_top(s, world, g);
+    return make_top(s, world, LAYER_SOLID, g) && make_top(s, world, LAYER_THROUGH, g);
 }
 
 noc_status noc_embree_follow(embree_structure *s) {

@@ -56,7 +56,7 @@ noc_status noc_vk_ask(void *view, const noc_render_params *params, bool tree, no
     return status == NOC_OK ? noc_backend_embree.ask(v->host, params, tree, out) : status;
 }
 
-void noc_vk_clear(void *view, const noc_sight *sights, size_t count, uint8_t *clear) {
+void noc_vk_clear(void *view, const noc_sight *sights, size_t count, float *clear) {
     noc_backend_embree.clear(((vk_view *)view)->host, sights, count, clear);
 }
 

@@ -471,7 +471,7 @@ void noc_vk_light_stats(void *view, noc_light_stats *stats);
 void noc_vk_run(void *device, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
 noc_status noc_vk_cast(void *view, const noc_ray *rays, size_t count, noc_hit *hits);
 noc_status noc_vk_ask(void *view, const noc_render_params *params, bool tree, noc_asking *out);
-void noc_vk_clear(void *view, const noc_sight *sights, size_t count, uint8_t *clear);
+void noc_vk_clear(void *view, const noc_sight *sights, size_t count, float *clear);
 noc_status noc_vk_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes);
 void noc_vk_forget_host_view(vk_view *v);
 void noc_vk_forget_host_world(vk_world *w);

@@ -172,6 +172,10 @@ static noc_status fill_image_places(vk_world *w) {
 
 static noc_status follow_materials(vk_world *w) {
     const noc_scene *s = w->scene;
+    if (s->lets_through)
+        return noc_error(w->log, NOC_ERR_UNSUPPORTED,
+                         "vulkan: the scene has surfaces that let light through, which embree alone renders "
+                         "(--backend embree)");
     if (w->filled && w->seen.materials == s->versions.materials && w->seen.geometry == s->versions.geometry)
         return NOC_OK;
     noc_status status =

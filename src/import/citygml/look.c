@@ -196,8 +196,6 @@ noc_wrap cg_wrap_of(const char *mode) {
 }
 
 void cg_material_left_out(cg_parser *p, const cg_look *look) {
-    if (look->transparency > 0)
-        geo_issue(p->sink->issues, GEO_GUESSED, "transparent material, taken as opaque", "");
     if (look->emissive[0] > 0 || look->emissive[1] > 0 || look->emissive[2] > 0)
         geo_issue(p->sink->issues, GEO_GUESSED, "emissive colour, which has no unit and is left out", "");
 }
@@ -205,6 +203,7 @@ void cg_material_left_out(cg_parser *p, const cg_look *look) {
 static void end_material(cg_parser *p, cg_look *look) {
     import_x3d_colour(&look->as, look->diffuse);
     import_x3d_gloss(&look->as, look->specular, look->shininess);
+    import_x3d_transparency(&look->as, look->transparency);
     cg_material_left_out(p, look);
 }
 

@@ -42,10 +42,11 @@ static uint32_t read_material(cj_reading *r, const json_t *material) {
     if (read_colour(material, "specularColor", look.specular) || json_is_number(shininess))
         import_x3d_gloss(&look.as, look.specular, look.shininess);
     read_colour(material, "emissiveColor", look.emissive);
-    look.transparency = json_number_value(json_object_get(material, "transparency"));
+    import_x3d_transparency(&look.as, json_number_value(json_object_get(material, "transparency")));
     const char *name = cj_text(material, "name");
-    char *key = noc_format("m %d %.9g %.9g %.9g %.9g %.9g %s", look.as.coloured, look.as.albedo[0], look.as.albedo[1],
-                           look.as.albedo[2], look.as.f0, look.as.roughness, name);
+    char *key =
+        noc_format("m %d %.9g %.9g %.9g %.9g %.9g %.9g %s", look.as.coloured, look.as.albedo[0], look.as.albedo[1],
+                   look.as.albedo[2], look.as.f0, look.as.roughness, look.as.transmittance, name);
     uint64_t known;
     if (key && *name && !map_get(&r->known_looks, key, &known) &&
         !(look.as.name = arena_strdup(&r->parser->persistent, name))) {

@@ -96,6 +96,7 @@ typedef struct scene_image {
     const char *path; /* in importer.names */
     uint8_t *data;    /* of one that lies in the input itself, or is kept; NULL: it is a file */
     noc_wrap wrap;
+    uint8_t cutoff;      /* where its alpha is smaller it has holes */
     size_t input;        /* the first that names it */
     uint64_t sum, bytes; /* of its file */
     int width, height, leave_out;

@@ -53,7 +53,7 @@ noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *n
     if (r->side && (lost || r->looks.len == MOST_LOOKS))
         return NOC_ERR_UNSUPPORTED;
     look.as.image = NULL;
-    if (!look.image && !look.as.coloured && !look.as.name)
+    if (!look.image && !look.as.coloured && !look.as.name && !(look.as.transmittance > 0))
         return NOC_OK;
     if (look.as.name && !(look.as.name = arena_strdup(&r->look_texts, look.as.name)))
         return noc_no_memory(r->log, r->in->path);
@@ -100,14 +100,14 @@ void look_free(reading *r) {
 /* ---- the scene's ---- */
 
 /* The number of the image, whose file `in` is if it is new. data: of one that lies in `in`. false: no memory. */
-static bool number_image(importer *im, const input *in, const char *path, noc_wrap wrap, const uint8_t *data,
-                         size_t size, uint64_t *number) {
-    char *key = noc_format("%d %s%s", (int)wrap, data ? "in " : "", path);
+static bool number_image(importer *im, const input *in, const char *path, noc_wrap wrap, uint8_t cutoff,
+                         const uint8_t *data, size_t size, uint64_t *number) {
+    char *key = noc_format("%d %d %s%s", (int)wrap, cutoff, data ? "in " : "", path);
     bool ok = key && true;
     if (ok && !map_get(&im->image_numbers, key, number)) {
-        scene_image image = { .path = arena_strdup(&im->names, path),
-                              .wrap = wrap,
-                              .input = (size_t)(in - im->inputs) };
+        scene_image image = {
+            .path = arena_strdup(&im->names, path), .wrap = wrap, .cutoff = cutoff, .input = (size_t)(in - im->inputs)
+        };
         *number = im->images.len;
         ok = image.path && array_reserve(&im->images, im->images.len + 1) &&
              map_put(&im->image_numbers, key, *number, NULL) && (!data || (image.data = noc_alloc_large(size, 1)));
@@ -123,7 +123,8 @@ static bool number_image(importer *im, const input *in, const char *path, noc_wr
     return ok;
 }
 
-/* Classes whose light is behind glass keep to it: what a file calls a window's colour is what it is drawn with. */
+/* Classes whose light is behind glass keep to it: what a file calls a window's colour is what it is drawn with. Behind
+ * a window is a room, which models do not have: no light goes through it. */
 static noc_material material_of(noc_class cls, const geo_appearance *as) {
     noc_material m = noc_class_material(cls);
     if (as->coloured)
@@ -132,17 +133,18 @@ static noc_material material_of(noc_class cls, const geo_appearance *as) {
         m.f0 = as->f0;
     if (as->roughness >= 0)
         m.roughness = as->roughness;
+    m.transmittance = cls == NOC_CLASS_WINDOW || noc_material_shines(&m) ? 0 : as->transmittance;
     return m;
 }
 
 noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material) {
     const geo_appearance *as = &look->as;
     uint64_t image = 0, found;
-    if (look->image && !number_image(im, in, look->image, as->wrap, NULL, 0, &image))
+    if (look->image && !number_image(im, in, look->image, as->wrap, 0, NULL, 0, &image))
         return noc_no_memory(im->log, in->path);
-    char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g %s", (int)cls, look->image ? (long long)image : -1,
+    char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g %.9g %s", (int)cls, look->image ? (long long)image : -1,
                            as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness,
-                           as->name ? as->name : "");
+                           as->transmittance, as->name ? as->name : "");
     if (!key)
         return noc_no_memory(im->log, in->path);
     noc_status status = NOC_OK;
@@ -178,7 +180,7 @@ noc_status look_mesh_image(void *ctx, int material, const mesh_image *image) {
         return status;
     image_use use = { .material = material };
     memcpy(use.albedo, image->albedo, sizeof(use.albedo));
-    if (!number_image(im, r->in, path, image->wrap, image->data, image->size, &number))
+    if (!number_image(im, r->in, path, image->wrap, image->cutoff, image->data, image->size, &number))
         return noc_no_memory(r->log, r->in->path);
     use.image = (uint32_t)number;
     return array_push(&im->image_uses, use) ? NOC_OK : noc_no_memory(r->log, r->in->path);
@@ -257,7 +259,7 @@ static void run_job(void *ctx, size_t item, int worker) {
     (void)worker;
     job->status = read_bytes(job->im, image, &read, &data, &size, &why);
     if (!job->status && job->whole) {
-        job->status = pixels_read(data, size, image->path, NULL, &job->pixels);
+        job->status = pixels_read(data, size, image->path, image->cutoff, NULL, &job->pixels);
     } else if (!job->status) {
         job->status = pixels_size(data, size, image->path, NULL, &image->width, &image->height);
         image->sum = noct_sum(data, size);
@@ -317,8 +319,8 @@ static noc_status find_alike(importer *im) {
         scene_image *image = &im->images.data[i];
         uint64_t before;
         bool same = false;
-        char *key = image->width ? noc_format("%d %llu %llx", (int)image->wrap, (unsigned long long)image->bytes,
-                                              (unsigned long long)image->sum)
+        char *key = image->width ? noc_format("%d %d %llu %llx", (int)image->wrap, image->cutoff,
+                                              (unsigned long long)image->bytes, (unsigned long long)image->sum)
                                  : NULL;
         if (!image->width)
             continue;
@@ -385,6 +387,7 @@ static noc_status add_image(importer *im, image_job *job) {
     noc_texture texture = { .width = job->pixels.width,
                             .height = job->pixels.height,
                             .rgb = job->pixels.rgb,
+                            .holes = job->pixels.holes,
                             .wrap = image->wrap,
                             .leave_out = image->leave_out };
     image->texture = noc_scene_add_texture(im->scene, &texture);
@@ -407,6 +410,7 @@ static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
             if (!status)
                 status = add_image(im, &jobs[i]);
             free(jobs[i].pixels.rgb);
+            free(jobs[i].pixels.holes);
             free(jobs[i].image->data);
             jobs[i].image->data = NULL;
         }

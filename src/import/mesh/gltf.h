@@ -79,7 +79,7 @@ bool gltf_texture_places(const gltf_texture *t, const json_t *primitive, size_t 
 /* Places of TEXCOORD_ as noc_mesh has them. NULL after reporting. */
 float *gltf_texture_uv(const gltf *g, const gltf_texture *t, const double *places, size_t count);
 /* That material of the scene looks like the texture's image, times the albedo. What is of no use is counted. */
-noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material, const float albedo[3],
+noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material, const float albedo[3], uint8_t cutoff,
                              const char *name);
 
 /* gltf_look.c */

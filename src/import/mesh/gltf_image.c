@@ -80,7 +80,7 @@ static noc_status find_image(const gltf *g, const json_t *item, size_t index, me
     return NOC_OK;
 }
 
-noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material, const float albedo[3],
+noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material, const float albedo[3], uint8_t cutoff,
                              const char *name) {
     size_t source;
     const json_t *texture = gltf_item(g, "textures", t->index);
@@ -89,7 +89,7 @@ noc_status gltf_texture_give(const gltf *g, const gltf_texture *t, int material,
         geo_issue(g->issues, GEO_GUESSED, "image that is not there", name);
         return NOC_OK;
     }
-    mesh_image image = { .wrap = wrap_of(g, texture, name) };
+    mesh_image image = { .wrap = wrap_of(g, texture, name), .cutoff = cutoff };
     memcpy(image.albedo, albedo, sizeof(image.albedo));
     char *path;
     const char *why = NULL;

@@ -24,12 +24,45 @@ static void no_textures(const gltf *g, const json_t *pbr, const json_t *m, const
     }
 }
 
+/* What of the light goes through. Alpha of 1 - a lets a share of a through; so does thin glass of that transmission,
+ * in the colour that it has. cutoff: alpha of the texture under which there is no surface. */
+static void let_through(const gltf *g, const json_t *m, const double base[4], double luminance, const char *name,
+                        bool textured, uint8_t *cutoff, noc_material *out) {
+    const char *mode = json_string_value(json_object_get(m, "alphaMode"));
+    const json_t *glass = gltf_extension(m, "KHR_materials_transmission");
+    bool blend = mode && !strcmp(mode, "BLEND"), mask = mode && !strcmp(mode, "MASK");
+    double alpha = limited(base[3], 0, 1), least = mask ? limited(gltf_number(m, "alphaCutoff", 0.5), 0, 1) : 0.5;
+    double clear = limited(gltf_number(glass, "transmissionFactor", 0), 0, 1);
+    double through = clear * luminance * (1 - out->f0);
+    *cutoff = 0;
+    if (mode && !blend && !mask && strcmp(mode, "OPAQUE"))
+        geo_issue(g->issues, GEO_GUESSED, "alpha mode that is not known, taken as opaque", name);
+    if (json_object_get(glass, "transmissionTexture"))
+        geo_issue(g->issues, GEO_GUESSED, "texture of transmission, which is not read", name);
+    if (noc_material_shines(out)) {
+        if (blend || mask || through > 0)
+            geo_issue(g->issues, GEO_GUESSED, "transparent material that emits, taken as opaque", name);
+        return;
+    }
+    if (blend)
+        through = 1 - alpha * (1 - through);
+    else if (mask && alpha < least)
+        through = 1;
+    if (textured && (blend || mask) && alpha > 0 && through < 1) {
+        if (blend)
+            geo_issue(g->issues, GEO_GUESSED, "alpha of a texture that blends, taken as holes where it is below a half",
+                      name);
+        *cutoff = blend ? 128 : (uint8_t)NOC_MIN(ceil(NOC_MIN(least / alpha, 1) * 255), 255);
+    }
+    out->cutout = *cutoff > 0;
+    out->transmittance = (float)through;
+}
+
 /* Without its texture. in_image: what the texture is to be multiplied with. */
-static noc_material convert_material(const gltf *g, const json_t *m, const char *name, bool textured,
-                                     float in_image[3]) {
+static noc_material convert_material(const gltf *g, const json_t *m, const char *name, bool textured, float in_image[3],
+                                     uint8_t *cutoff) {
     noc_material out = noc_class_material(NOC_CLASS_OTHER);
     const json_t *pbr = json_object_get(m, "pbrMetallicRoughness");
-    const char *mode = json_string_value(json_object_get(m, "alphaMode"));
     double base[4] = { 1, 1, 1, 1 }, emission[3] = { 0, 0, 0 };
     gltf_numbers(pbr, "baseColorFactor", 4, base);
     gltf_numbers(m, "emissiveFactor", 3, emission);
@@ -52,8 +85,7 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     out.f0 = (float)limited(f0, 0, 1);
     out.roughness = (float)limited(roughness, 0.05, 1);
     out.two_sided = json_is_true(json_object_get(m, "doubleSided"));
-    if (mode && strcmp(mode, "OPAQUE"))
-        geo_issue(g->issues, GEO_GUESSED, "transparent material, rendered opaque", name);
+    let_through(g, m, base, luminance, name, textured, cutoff, &out);
     return out;
 }
 
@@ -80,8 +112,9 @@ noc_status gltf_material(gltf *g, const json_t *primitive, bool placed, int *ind
         gltf_texture texture;
         float in_image[3];
         bool textured = m && gltf_texture_of(g, m, &texture);
+        uint8_t cutoff = 0;
         if (m)
-            converted = convert_material(g, m, name, textured, in_image);
+            converted = convert_material(g, m, name, textured, in_image, &cutoff);
         if (textured && !placed && g->told)
             geo_issue(g->issues, GEO_GUESSED,
                       g->images ? "texture without places in it, plain material"
@@ -92,7 +125,7 @@ noc_status gltf_material(gltf *g, const json_t *primitive, bool placed, int *ind
         if (*have && own && noc_scene_name_material(g->scene, *have - 1, own))
             return NOC_ERR_MEMORY;
         status = !*have   ? NOC_ERR_UNSUPPORTED /* said by the scene */
-                 : placed ? gltf_texture_give(g, &texture, *have - 1, in_image, name)
+                 : placed ? gltf_texture_give(g, &texture, *have - 1, in_image, cutoff, name)
                           : NOC_OK;
     }
     *index = *have - 1;

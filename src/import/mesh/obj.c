@@ -4,7 +4,8 @@
  * most programs write, and noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the
  * radiance in cd/m2, Ks with illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its
  * Blinn-Phong exponent n, turned into the GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37
- * ff.), map_Kd an image of the diffuse reflectance, times Kd. Assimp hears nothing of that one, which obj_library.c
+ * ff.), d (or 1 - Tr) what of the light a surface takes, map_Kd
+ * an image of the diffuse reflectance, times Kd. Assimp hears nothing of that one, which obj_library.c
  * finds; other textures are not read.
  *
  * Assimp reads the materials. Vertices and faces are read here (obj_text.c): its floats would round coordinates of a
@@ -220,8 +221,11 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
             out.albedo[i] *= (1 - out.f0) / most;
     if (changed)
         geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", name);
-    if (get_float(m, "$mat.opacity", &opacity) && opacity < 1)
-        geo_issue(issues, GEO_GUESSED, "transparent material, rendered opaque", name);
+    bool clear = get_float(m, "$mat.opacity", &opacity) && opacity < 1;
+    if (clear && noc_material_shines(&out))
+        geo_issue(issues, GEO_GUESSED, "transparent material that emits, taken as opaque", name);
+    else if (clear)
+        out.transmittance = 1 - NOC_MAX(opacity, 0);
     return out;
 }
 

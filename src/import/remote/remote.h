@@ -68,7 +68,7 @@ typedef struct remote_footprint {
     uint64_t use;
 } remote_footprint;
 typedef struct remote_image {
-    uint32_t there, wrap;
+    uint32_t there, wrap, cutoff;
     float albedo[3];
 } remote_image;
 typedef struct remote_mesh {

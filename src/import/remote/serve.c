@@ -171,7 +171,7 @@ static noc_status on_material(void *ctx, const noc_material *material, const cha
     serving *s = ctx;
     remote_image told = { 0 };
     if (image) {
-        told = (remote_image){ .there = 1, .wrap = image->wrap };
+        told = (remote_image){ .there = 1, .wrap = image->wrap, .cutoff = image->cutoff };
         memcpy(told.albedo, image->albedo, sizeof(told.albedo));
     }
     remote_put(&s->out, material, sizeof(*material));

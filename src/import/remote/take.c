@@ -195,12 +195,13 @@ static noc_status take_object_end(remote_taker *t) {
 static noc_status take_material(remote_taker *t, remote_record *one) {
     noc_material material;
     remote_image told = { 0 };
-    if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided) || material.texture)
+    if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided) ||
+        !is_bool(&material.cutout) || material.texture)
         return garbled(t);
     const char *name = remote_get_text(one);
     remote_get(one, &told, sizeof(told));
-    mesh_image image = { .name = remote_get_text(one), .wrap = (noc_wrap)told.wrap };
-    bool sound = told.there <= 1 && told.wrap <= NOC_WRAP_CLAMP;
+    mesh_image image = { .name = remote_get_text(one), .wrap = (noc_wrap)told.wrap, .cutoff = (uint8_t)told.cutoff };
+    bool sound = told.there <= 1 && told.wrap <= NOC_WRAP_CLAMP && told.cutoff <= UINT8_MAX;
     for (int k = 0; k < 3; k++) {
         image.albedo[k] = told.albedo[k];
         sound = sound && told.albedo[k] >= 0 && told.albedo[k] <= 1; /* false for NaN, too */
