@@ -2,14 +2,19 @@
 #include "render.h"
 #include "viewer/viewer.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+enum { SHORTEST_TOKEN = 16, LONGEST_TOKEN = 128 };
 
 /* What clients can make it say: so many lines at once and a minute. While the city is read there is no such limit. */
 #define LINES 20
@@ -22,10 +27,12 @@ typedef struct view_lines {
 /* Arguments of render that view takes too, and its own. */
 typedef struct view_args {
     render_args render;
-    const char *address, *token;
+    const char *address, *token, *token_file;
     int port, clients;
     bool open;
-    bool unsaid; /* the link could not be written */
+    bool unsaid;                       /* the link could not be written */
+    char own_token[LONGEST_TOKEN + 1]; /* token_file's */
+    char *page;                        /* of --open, which leads to the link; NULL: none */
     view_lines *lines;
 } view_args;
 
@@ -38,6 +45,8 @@ static const noc_option own_options[] = {
     { "clients", "Viewer", NOC_OPTION_INT, offsetof(A, clients), 1, 64, NULL, "", "browsers at once, at most" },
     { "token", "Viewer", NOC_OPTION_TEXT, offsetof(A, token), 0, 0, NULL, "TEXT",
       "secret that the link has, 16 or more letters and digits; else a random one" },
+    { "token-file", "Viewer", NOC_OPTION_TEXT, offsetof(A, token_file), 0, 0, NULL, "FILE",
+      "the same, from the first line of a file: arguments are seen by other users" },
     { "open", "Viewer", NOC_OPTION_BOOL, offsetof(A, open), 0, 1, NULL, "",
       "open the link in a browser of this machine" },
     { NULL },
@@ -100,18 +109,46 @@ const cli_command cli_view = {
     run,
 };
 
-static int check_token(const char *token) {
-    enum { SHORTEST = 16, LONGEST = 128 };
-    size_t n = token ? strlen(token) : SHORTEST;
+/* The first line of the file becomes the token. */
+static int read_token(view_args *args) {
+    char *to = args->own_token;
+    struct stat st;
+    int fd = open(args->token_file, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0 || fstat(fd, &st) || S_ISDIR(st.st_mode)) {
+        int error = fd < 0 ? errno : EISDIR;
+        if (fd >= 0)
+            close(fd);
+        cli_error("--token-file: %s: %s", args->token_file, strerror(error));
+        return CLI_FAILURE;
+    }
+    ssize_t n = read(fd, to, sizeof(args->own_token));
+    close(fd);
+    size_t size = n > 0 ? (size_t)n : 0, line = 0;
+    while (line < size && to[line] != '\n' && to[line] != '\r')
+        line++;
+    if (line > LONGEST_TOKEN)
+        line = 0; /* no token is so long */
+    to[line] = 0;
+    args->token = to;
+    return CLI_OK;
+}
+
+static int check_token(view_args *args) {
+    if (args->token && args->token_file)
+        return cli_usage(&cli_view, "--token and --token-file exclude each other");
+    int status = args->token_file ? read_token(args) : CLI_OK;
+    const char *token = args->token;
+    size_t n = token ? strlen(token) : SHORTEST_TOKEN;
     bool plain = !token || strspn(token, "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-_") == n;
-    return plain && n >= SHORTEST && n <= LONGEST
-               ? CLI_OK
-               : cli_usage(&cli_view, "--token: %d to %d letters, digits, - and _", SHORTEST, LONGEST);
+    if (status || (plain && n >= SHORTEST_TOKEN && n <= LONGEST_TOKEN))
+        return status;
+    return cli_usage(&cli_view, "%s: %d to %d letters, digits, - and _", args->token_file ? "--token-file" : "--token",
+                     SHORTEST_TOKEN, LONGEST_TOKEN);
 }
 
 static int check(view_args *args) {
     render_args *render = &args->render;
-    int status = check_token(args->token);
+    int status = check_token(args);
     status = status ? status : cli_choose_camera(render);
     if (status)
         return status;
@@ -119,6 +156,13 @@ static int check(view_args *args) {
     if (!render->common.input_count)
         render->common.inputs[render->common.input_count++] = "builtin:city";
     status = cli_check_city(render);
+    for (size_t i = 0; i < render->common.input_count && !status; i++) { /* before a link is told that leads nowhere */
+        const char *path = render->common.inputs[i];
+        if (strncmp(path, "builtin:", 8) != 0 && access(path, F_OK)) {
+            cli_error("%s: %s", path, strerror(errno));
+            status = CLI_FAILURE;
+        }
+    }
     return status ? status : cli_parse_show(render);
 }
 
@@ -193,8 +237,34 @@ static void say(void *user, noc_log_level level, const char *text) {
     cli_error("%s%s", level == NOC_LOG_WARN ? "warning: " : "", text);
 }
 
-static void open_browser(const char *link) {
-    char program[] = "xdg-open", *copy = cli_format("%s", link), *words[] = { program, copy, NULL };
+/* A page of this user's alone that leads to the link: arguments of programs are seen by all users, and the link holds
+ * the token. NULL after a warning. */
+static char *write_page(const char *link) {
+    const char *run = getenv("XDG_RUNTIME_DIR");
+    struct stat st;
+    bool own = run && *run == '/' && !stat(run, &st) && S_ISDIR(st.st_mode) && !access(run, W_OK);
+    char *path = cli_format("%s/nocturne-XXXXXX.html", own ? run : "/tmp");
+    int fd = mkostemps(path, 5, O_CLOEXEC); /* of mode 0600 */
+    FILE *page = fd < 0 ? NULL : fdopen(fd, "w");
+    bool ok = page && fprintf(page,
+                              "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">"
+                              "<meta http-equiv=\"refresh\" content=\"0;url=%s\"><title>Nocturne</title>"
+                              "<a href=\"%s\">Nocturne</a>\n",
+                              link, link) > 0;
+    ok = page && !fclose(page) && ok;
+    if (ok)
+        return path;
+    cli_error("warning: --open: %s: %s; open the link by hand", path, strerror(errno));
+    if (fd >= 0)
+        unlink(path);
+    free(path);
+    return NULL;
+}
+
+static void open_browser(view_args *args, const char *link) {
+    if (!(args->page = write_page(link)))
+        return;
+    char program[] = "xdg-open", *copy = cli_format("file://%s", args->page), *words[] = { program, copy, NULL };
     pid_t child;
     if (posix_spawnp(&child, program, NULL, NULL, words, environ))
         cli_error("warning: --open: xdg-open is not there; open the link by hand");
@@ -207,7 +277,7 @@ static void listening(void *user, const char *link) {
     printf("%s\n", link);
     args->unsaid = !cli_flush(stdout); /* nobody could come */
     if (args->open && !args->unsaid)
-        open_browser(link);
+        open_browser(args, link);
 }
 
 /* Options of the words, each with the struct that it is a field of. */
@@ -244,6 +314,9 @@ static int view(view_args *args, noc_log *log) {
     viewer_params params = { args->address, args->port, args->clients, args->token, ended, listening, say, args };
     noc_status status = viewer_run(&source, &params, log);
     free((void *)source.given);
+    if (args->page)
+        unlink(args->page);
+    free(args->page);
     if (status == NOC_ERR_UNSUPPORTED)
         cli_error("this build has no viewer: %s; build it with the Meson option -Dviewer=enabled", viewer_features());
     return status || args->unsaid ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;

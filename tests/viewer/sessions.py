@@ -11,7 +11,7 @@ import time
 
 import hand
 from hand import CITY, all_see, enter, near, said
-from wire import Client, Picture, Program
+from wire import LIMIT, TOKEN, Client, Picture, Program
 
 
 def test_a_picture_shows_the_newest_input(p):
@@ -329,7 +329,7 @@ def test_many_come_and_go(p):
 def run(*arguments, timeout=60):
     done = subprocess.run([os.environ["NOC_PROGRAM"], "view", *arguments], capture_output=True, text=True,
                           timeout=timeout, check=False)
-    return done.returncode, done.stderr
+    return done.returncode, done.stderr, done.stdout
 
 
 def test_ports_and_addresses_that_cannot_be(p):
@@ -344,6 +344,58 @@ def test_ports_and_addresses_that_cannot_be(p):
         assert got[0] == status and text in got[1] and len(got[1].splitlines()) <= 2, (arguments, got)
 
 
+def test_a_token_from_a_file(p):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "token")
+        for text, status, said in (("short\n", 2, "--token-file: 16 to 128"), ("", 2, "--token-file: 16 to 128"),
+                                   ("a" * 129, 2, "--token-file: 16 to 128"), (None, 1, path)):
+            if text is None:
+                os.unlink(path)
+            else:
+                with open(path, "w", encoding="ascii") as file:
+                    file.write(text)
+            got = run("builtin:single", "--port", "0", "--token-file", path)
+            assert got[0] == status and said in got[1], (text, got)
+        got = run("builtin:single", "--port", "0", "--token-file", folder)
+        assert got[0] == 1 and "Is a directory" in got[1], got
+        got = run("builtin:single", "--token", TOKEN, "--token-file", path)
+        assert got[0] == 2 and "exclude" in got[1], got
+        with open(path, "w", encoding="ascii") as file:
+            file.write("of-a-file-0123456789\n# and more\n")
+        view = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:single", "--port", "0", "--token-file",
+                                 path],
+                                stdout=subprocess.PIPE, text=True)
+        link = view.stdout.readline().strip()
+        view.terminate()
+        view.wait()
+        assert link.endswith("#token=of-a-file-0123456789"), link
+
+
+def test_a_browser_is_given_no_secret_in_its_arguments(p):
+    """The page that it is given leads to the link, is of this user alone, and goes with the program."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "xdg-open"), "w", encoding="ascii") as file:
+            file.write('#!/bin/sh\nprintf "%s\\n" "$@" > "$HERE/part"; mv "$HERE/part" "$HERE/arguments"\n')
+        os.chmod(os.path.join(folder, "xdg-open"), 0o755)
+        environment = dict(os.environ, HERE=folder, XDG_RUNTIME_DIR=folder, PATH=folder + ":" + os.environ["PATH"])
+        view = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:single", "--port", "0", "--open"],
+                                stdout=subprocess.PIPE, text=True, env=environment)
+        link = view.stdout.readline().strip()
+        end = time.monotonic() + LIMIT
+        while not os.path.exists(os.path.join(folder, "arguments")) and time.monotonic() < end:
+            time.sleep(0.05)
+        with open(os.path.join(folder, "arguments"), encoding="ascii") as file:
+            arguments = file.read().splitlines()
+        assert len(arguments) == 1 and arguments[0].startswith("file://" + folder + "/nocturne-"), arguments
+        page = arguments[0][len("file://"):]
+        assert os.stat(page).st_mode & 0o777 == 0o600, oct(os.stat(page).st_mode)
+        with open(page, encoding="ascii") as file:
+            assert link in file.read() and "#token=" in link, link
+        view.terminate()
+        view.wait()
+        assert not os.path.exists(page), page
+
+
 def test_a_link_that_nobody_gets(p):
     """It ends where the link cannot be written: nobody could come."""
     for end in ">/dev/full", ">&-":
@@ -354,7 +406,7 @@ def test_a_link_that_nobody_gets(p):
 
 def test_inputs_that_cannot_be(p):
     got = run("nowhere.gml", "--port", "0")
-    assert got[0] == 1 and got[1].count("nowhere.gml") == 1, got
+    assert got[0] == 1 and got[1].count("nowhere.gml") == 1 and not got[2], got # no link, either
     assert run("builtin:nothing", "--port", "0")[0] in (1, 2)
 
 
