@@ -71,6 +71,9 @@ static bool put(char out[48], const char *authority, const char *code, size_t co
     snprintf(out, 48, "%s:%.*s", authority, (int)code_size, code);
     for (char *c = out; *c; c++)
         *c = (char)toupper((unsigned char)*c);
+    size_t size = strlen(out);
+    if (!strncmp(out, "OGC:", 4) && out[size - 1] == 'H') /* CRS84h: PROJ tells cases apart */
+        out[size - 1] = 'h';
     return true;
 }
 
