@@ -102,6 +102,7 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
     *o = (output){ .path = noc_strdup(path), .target = resolve(path) };
     noc_status status;
     struct stat st;
+    mode_t mode = 0666;
     int fd = -1;
     if (!o->path || !o->target) {
         status = noc_no_memory(log, path);
@@ -113,11 +114,14 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
         goto fail;
     }
     /* Renaming would replace a device or a pipe by a plain file. */
-    if (stat(o->target, &st) == 0 && !S_ISREG(st.st_mode)) {
+    bool replaces = stat(o->target, &st) == 0;
+    if (replaces && !S_ISREG(st.st_mode)) {
         status = noc_error(log, NOC_ERR_IO, "%s: cannot be written: %s", path,
                            S_ISDIR(st.st_mode) ? "it is a directory" : "it is not a regular file");
         goto fail;
     }
+    if (replaces)
+        mode = st.st_mode & 0777;
     sweep(o->target);
     for (int attempt = 0; fd < 0 && attempt < 1000; attempt++) {
         free(o->temporary);
@@ -126,7 +130,7 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
             status = noc_no_memory(log, path);
             goto fail;
         }
-        fd = open(o->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        fd = open(o->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (fd < 0 && errno != EEXIST)
             break;
         if (fd >= 0 && !claim(fd)) {
@@ -135,6 +139,9 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
         }
     }
     o->file = fd >= 0 ? fdopen(fd, "w+b") : NULL;
+    /* Who may read what was there may read this. Where a file system has no modes it is no more open than before. */
+    if (o->file && replaces && fchmod(fd, mode))
+        errno = 0;
     if (o->file)
         return NOC_OK;
     status = fail(path, "cannot be written", log);

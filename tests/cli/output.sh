@@ -35,6 +35,10 @@ expect "a name of 256 bytes" 1 'too long' render $c -o "x$long.png"
 run render $small -o "$long.png"
 test $status = 0 && test "$(meta "$long.png" size)" = "1 500"
 result $? "one of 255 bytes can be written, and a slit has a view"
+(umask 022 && : >private.png && : >shared.png && chmod 600 private.png && chmod 664 shared.png
+    for mode in private shared fresh; do "$program" render $small -o $mode.png; done) >out 2>err
+test "$(stat -c %a private.png shared.png fresh.png | tr '\n' ' ')" = "600 664 644 " && test -s private.png
+result $? "a file keeps the mode of the one that it replaces" "$(stat -c '%n %a' private.png shared.png fresh.png)"
 ln -s ring.png ring.png
 expect "a ring of links" 1 'symbolic links' render $c -o ring.png
 if [ -d /proc/self ]; then
