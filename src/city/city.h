@@ -165,12 +165,22 @@ void city_add_ground(noc_scene *scene, const double *points, size_t point_count)
  * to stand under, or the scene is out of memory. Until it is laid, which frees it, the scene does not change. */
 typedef struct city_ground city_ground;
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count);
+/* By what buildings stand at alone, not by streets; NULL, too, where there are none. It is not to be laid. */
+city_ground *city_ground_of_buildings(noc_scene *scene);
 /* Meshes before that one have a ground of their own: their walls end where they end. */
 void city_ground_keep(city_ground *g, size_t first_mesh);
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
 double city_ground_height(const city_ground *g, double x, double y, double *distance);
 void city_ground_lay(city_ground *g, const double *points, size_t count); /* through those that have a height */
 void city_ground_free(city_ground *g);                                    /* one that is not to be laid */
+
+/* Roads, pavements, lawns and water among the meshes first to end that lie level at height 0 (or, many of them, at
+ * another one) far from all that stands around them have no height: they are laid on the terrain, or at the feet of the
+ * buildings. zero: where height 0 of their file is. tell is asked of each: its name or NULL, its height, and how much
+ * that is above what stands around it, m. */
+typedef void (*city_level_fn)(void *user, const char *name, double z, double off);
+noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, double zero, city_level_fn tell,
+                                   void *user);
 
 /* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
 bool city_wall_foot(const float *a, const float *b, const float *c);

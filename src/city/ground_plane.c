@@ -43,10 +43,28 @@ static bool is_thing(noc_class cls) {
     return cls == NOC_CLASS_FURNITURE || cls == NOC_CLASS_TREE || cls == NOC_CLASS_VEHICLE;
 }
 
+/* The next triangle of a mesh that tells where the ground is, from t on; `end` if there is none before. mesh: the one
+ * that t is of. */
+static size_t next_base(const noc_scene *scene, size_t *mesh, size_t t, size_t end) {
+    while (t < end) {
+        const noc_scene_mesh *m = &scene->meshes.data[*mesh];
+        size_t mesh_end = (size_t)m->first_triangle + m->triangle_count;
+        if (!m->aloft && t < mesh_end)
+            return t;
+        t = NOC_MAX(t, mesh_end);
+        ++*mesh;
+    }
+    return end;
+}
+
+#define EACH_BASE(scene, t)                                                                                            \
+    for (size_t mesh_ = 0, end_ = (scene)->triangle_light.len, t = next_base(scene, &mesh_, 0, end_); t < end_;        \
+         t = next_base(scene, &mesh_, t + 1, end_))
+
 static bool has_bases(const noc_scene *scene) {
-    for (size_t t = 0; t < scene->triangle_light.len; t++)
-        if (is_base(class_of(scene, t)))
-            return true;
+    EACH_BASE(scene, t)
+    if (is_base(class_of(scene, t)))
+        return true;
     return false;
 }
 
@@ -200,13 +218,14 @@ static bool fill(field *f) {
 }
 
 /* Raises known cells from the lowest point in them to the mean of the feet there. */
-static void raise_to_feet(field *f, const noc_scene *scene) {
+static void raise_to_feet(field *f, const noc_scene *scene, bool land) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
     double *sum = f->scratch, *weight = sum + n;
     memset(sum, 0, 2 * n * sizeof(*sum));
-    for (size_t t = 0; t < scene->triangle_light.len; t++) {
+    EACH_BASE(scene, t) {
         noc_class cls = class_of(scene, t);
-        for (int i = 0; i < 3 && (cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND); i++) {
+        bool told = land || !scene->meshes.data[mesh_].land;
+        for (int i = 0; i < 3 && told && (cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND); i++) {
             const float *a = corner(scene, t, i), *b = corner(scene, t, (i + 1) % 3),
                         *c = corner(scene, t, (i + 2) % 3);
             if (cls == NOC_CLASS_WALL && !city_wall_foot(a, b, c))
@@ -353,7 +372,8 @@ static bool make_field(field *f, const noc_scene *scene, const double *points, s
 struct city_ground {
     noc_scene *scene;
     field f;
-    bool known; /* something in the scene tells a height */
+    bool streets; /* and land tell heights, too */
+    bool known;   /* something in the scene tells a height */
     bool level;
     double z; /* of a level one */
     size_t first_mesh;
@@ -374,7 +394,7 @@ static bool settle(city_ground *g) {
         }
         return true;
     }
-    raise_to_feet(f, g->scene);
+    raise_to_feet(f, g->scene, g->streets);
     spread_streets(f);
     if (!fill(f))
         return false;
@@ -392,7 +412,13 @@ void city_ground_free(city_ground *g) {
     free(g);
 }
 
-city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count) {
+static bool tells(noc_class cls, bool land, bool bases, bool streets) {
+    if (!streets)
+        return is_base(cls) && !land && (!is_street(cls) || cls == NOC_CLASS_TERRAIN);
+    return bases ? is_base(cls) : is_thing(cls);
+}
+
+static city_ground *start(noc_scene *scene, const double *points, size_t count, bool streets) {
     if ((!scene->indices.len && !count) || scene->committed)
         return NULL;
     city_ground *g = noc_calloc(1, sizeof(*g));
@@ -403,10 +429,11 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
         return NULL;
     }
     g->scene = scene;
+    g->streets = streets;
     bool bases = has_bases(scene), any = false;
-    for (size_t t = 0; t < scene->triangle_light.len; t++) {
+    EACH_BASE(scene, t) {
         noc_class cls = class_of(scene, t);
-        if (bases ? !is_base(cls) : !is_thing(cls))
+        if (!tells(cls, scene->meshes.data[mesh_].land, bases, streets))
             continue;
         add_triangle(&g->f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2), is_street(cls));
         any = true;
@@ -417,6 +444,18 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
     if (settle(g))
         return g;
     noc_scene_out_of_memory(scene);
+    city_ground_free(g);
+    return NULL;
+}
+
+city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count) {
+    return start(scene, points, count, true);
+}
+
+city_ground *city_ground_of_buildings(noc_scene *scene) {
+    city_ground *g = start(scene, NULL, 0, false);
+    if (!g || g->known)
+        return g;
     city_ground_free(g);
     return NULL;
 }

@@ -110,7 +110,7 @@ void city_add_skirts(noc_scene *scene, size_t first_mesh) {
     }
     for (size_t m = first_mesh; m < meshes && !scene->no_memory; m++) {
         const noc_scene_mesh *mesh = &scene->meshes.data[m];
-        if (scene->materials.data[mesh->material].cls != NOC_CLASS_WALL)
+        if (scene->materials.data[mesh->material].cls != NOC_CLASS_WALL || mesh->aloft)
             continue;
         const uint32_t *v = scene->indices.data + 3 * (size_t)mesh->first_triangle;
         double lowest = INFINITY;

@@ -47,6 +47,8 @@ typedef struct noc_scene_mesh {
     uint16_t model; /* 0: the world */
     uint16_t group;
     bool removed;     /* its ranges are dead */
+    bool aloft;       /* until the commit: begins above the ground, and tells nothing of it */
+    bool land;        /* until the commit: ground that is no building's */
     bool panes;       /* triangles of it show windows: what it is made of does not shine */
     uint32_t uv;      /* place + 1 of its first vertex in `uv`; 0: it has none */
     uint32_t made;    /* versions.geometry of the commit that filled it */

@@ -188,7 +188,7 @@ static void test_mesh_place(void **state) {
     struct run r;
     noc_import_params p = with_crs("EPSG:25832", NULL);
     const char *city =
-        file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
+        file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 370 678120 5403590 370 678120 5403620 370\nend\n");
     const char *mesh = file("m", "FAKE mesh\n");
     p.infer_lamps = false;
     p.infer_lamps = false;

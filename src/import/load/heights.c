@@ -6,9 +6,10 @@
 
 #define OTHER_SYSTEM                                                                                                   \
     8.0 /* m off, all alike: another height system. Those in use in one country differ by less, or by some 50 m */
-#define ALIKE 0.2 /* of that offset: half of the lamps lie within so much of it */
-#define STEEP 0.2 /* a lamp is believed that far off what the city tells, for each metre to where it tells it */
-#define OFF 3.0   /* m more */
+#define ALIKE 0.2   /* of that offset: half of the lamps lie within so much of it */
+#define STEEP 0.2   /* a lamp is believed that far off what the city tells, for each metre to where it tells it */
+#define OFF 3.0     /* m more */
+#define ON_DECK 2.0 /* m between a lamp's foot and the deck of a bridge that it stands on */
 
 /* Height of the ground that the city tells of, and how far away it tells it; false where it does not. */
 static bool told_height(const importer *im, const city_ground *ground, const double *p, double *z, double *distance) {
@@ -32,13 +33,16 @@ static double median(double *values, size_t count) {
 /* One input's lamps: forgets their heights where all of them are off alike. */
 static void check_input(importer *im, const city_ground *ground, size_t index, double *off) {
     size_t n = 0;
+    bool zero = true; /* heights that are none are 0 */
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp *p = &im->lamps.data[i];
         double z, distance;
-        if (p->input == index && isfinite(p->lamp.xyz[2]) && told_height(im, ground, p->lamp.xyz, &z, &distance))
-            off[n++] = p->lamp.xyz[2] - z;
+        if (p->input != index || !isfinite(p->lamp.xyz[2]) || !told_height(im, ground, p->lamp.xyz, &z, &distance))
+            continue;
+        off[n++] = p->lamp.xyz[2] - z;
+        zero = zero && fabs(p->lamp.xyz[2] + im->origin[2]) < 1e-3;
     }
-    if (n < 3)
+    if (n < (zero ? 1 : 3))
         return;
     double middle = median(off, n);
     for (size_t i = 0; i < n; i++)
@@ -55,6 +59,40 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
         im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
 }
 
+typedef struct leveling {
+    importer *im;
+    input *in;
+    size_t count;
+    double z, off;
+    const char *example;
+} leveling;
+
+static void tell_level(void *user, const char *name, double z, double off) {
+    leveling *l = user;
+    geo_issue(l->in->issues, GEO_GUESSED, "surface at a height that is none, laid on what is around it",
+              name ? name : "");
+    l->example = l->count++ ? l->example : name;
+    l->z = z;
+    l->off = off;
+}
+
+noc_status heights_of_surfaces(importer *im) {
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < im->input_count && !status; i++) {
+        leveling l = { im, &im->inputs[i] };
+        if (!l.in->started || !l.in->reader || l.in->reader->reads != NOC_READS_CITY)
+            continue;
+        status = city_lay_level_surfaces(im->scene, l.in->first_mesh, l.in->end_mesh, -im->origin[2], tell_level, &l);
+        if (l.count)
+            noc_warn(im->log,
+                     "%s: %zu surfaces of roads, lawns or water (%s) lie level at %.2f m, %.0f m %s what stands around "
+                     "them: heights that are not known, it seems. They are laid on the ground that there is",
+                     l.in->path, l.count, l.example ? l.example : "without a name", l.z, fabs(l.off),
+                     l.off < 0 ? "below" : "above");
+    }
+    return status;
+}
+
 noc_status heights_check(importer *im, const city_ground *ground) {
     double *off = noc_alloc((im->lamps.len + 1) * sizeof(*off));
     if (!off)
@@ -69,6 +107,11 @@ noc_status heights_check(importer *im, const city_ground *ground) {
 void heights_lay(importer *im, city_ground *ground, double *points, size_t count) {
     for (size_t i = 0; i < count; i++) {
         double *p = points + 3 * i, z, distance;
+        if (isfinite(p[2]) && noc_scene_highest(im->scene, 1u << NOC_CLASS_BRIDGE, p[0], p[1], &z) &&
+            fabs(p[2] - z) < ON_DECK) { /* the ground is below it */
+            p[2] = NAN;
+            continue;
+        }
         /* between houses the city tells little: there a lamp may be on a hill; beside one it may be a slip of the pen
          */
         if (isfinite(p[2]) && told_height(im, ground, p, &z, &distance) && !(fabs(p[2] - z) <= OFF + STEEP * distance))

@@ -381,7 +381,8 @@ static noc_status ask_roads(importer *im) {
 
 static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
-    noc_status stood = footprints_stand(im);
+    noc_status stood = heights_of_surfaces(im);
+    stood = stood ? stood : footprints_stand(im);
     if (stood)
         return stood;
     extent e = city_extent(scene);

@@ -57,6 +57,7 @@ typedef struct input {
     noc_report_file file; /* texts in the report's arena */
     bool remote;          /* read by the helper */
     bool started, repeated;
+    size_t first_mesh, end_mesh;      /* of the scene, that were read from it */
     size_t lamps_lost;                /* that the reader or the sink found to have no place */
     NOC_ARRAY(float) lamp_heights;    /* of those that name no unit, as they are written */
     NOC_ARRAY(float) lantern_heights; /* of these, of lanterns */
@@ -515,6 +516,8 @@ noc_status warn_of_doubles(const importer *im);
 
 /* heights.c */
 struct city_ground;
+/* Lays surfaces whose heights are none on what stands around them, and says so. */
+noc_status heights_of_surfaces(importer *im);
 /* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the
  * scene's own is there. */
 noc_status heights_check(importer *im, const struct city_ground *ground);

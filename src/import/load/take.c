@@ -128,8 +128,12 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     in->object_begun = !part->u.object.last;
     if (part->u.object.id && part->u.object.surface_count)
         status = repeat_object(im, in, now, id);
-    for (size_t i = 0; i < part->u.object.surface_count && !status && !in->object_repeated; i++)
+    for (size_t i = 0; i < part->u.object.surface_count && !status && !in->object_repeated; i++) {
         status = take_surface(im, in, id, &part->u.object.surfaces[i]);
+        bool ground = part->u.object.surfaces[i].cls == NOC_CLASS_GROUND;
+        if (!status && ground && now->kind != GEO_BUILDING)
+            im->scene->meshes.data[im->scene->meshes.len - 1].land = true;
+    }
     if (status || !part->u.object.last)
         return status;
     for (int c = 0; c < NOC_CLASS_COUNT && !in->object_repeated; c++)
@@ -176,6 +180,7 @@ static void tell(noc_log *log, noc_log_level level, const char *text) {
 
 taking take_start(importer *im, input *in) {
     in->started = true;
+    in->first_mesh = im->scene->meshes.len;
     im->scene_before = noc_scene_bytes(im->scene);
     return (taking){ im, in, im->log, im->scene->log };
 }
@@ -208,6 +213,7 @@ noc_status take_finish(const taking *t, noc_status status) {
     t->im->log = t->log; /* PART_QUIET took them away */
     t->im->scene->log = t->of_scene;
     t->im->bytes_before += (double)t->in->bytes;
+    t->in->end_mesh = t->im->scene->meshes.len;
     bool added = add_found(t->in);
     return status || added ? status : noc_no_memory(t->im->log, t->in->path);
 }
