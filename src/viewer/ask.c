@@ -75,6 +75,7 @@ static void on_log(void *user, noc_log_level level, const char *text) {
 
 static void answer(asker *a, const question *q) {
     *a->wrong = 0;
+    world_settle(a->world); /* its command says all that was set */
     if (!a->ask_view && !(a->ask_view = noc_view_create(world_device(a->world), world_scene(a->world)))) {
         ask_refuse(a, q, "there is no memory for it");
         return;

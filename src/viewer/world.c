@@ -65,6 +65,7 @@ static void publish(viewer_world *w) {
     status = status ? status : noc_scene_commit(w->scene);
     pthread_mutex_lock(&w->mutex);
     w->busy = false;
+    w->published++;
     w->version += !status;
     pthread_cond_broadcast(&w->changed);
 }
@@ -180,7 +181,8 @@ void world_look(viewer_world *w) {
 
 void world_settle(viewer_world *w) {
     pthread_mutex_lock(&w->mutex);
-    while (w->loaded && !w->ended && (w->dirty || w->busy))
+    uint64_t last = w->published + w->busy + (w->dirty != 0); /* cars that drive set more meanwhile */
+    while (w->loaded && !w->ended && w->published < last)
         pthread_cond_wait(&w->changed, &w->mutex);
     pthread_mutex_unlock(&w->mutex);
 }

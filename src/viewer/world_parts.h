@@ -61,6 +61,7 @@ struct viewer_world {
     bool busy;     /* the thread publishes */
     double looked; /* when somebody did, s */
     uint64_t version, told;
+    uint64_t published; /* commits, well or not */
 };
 
 /* world_set.c: once the scene is there. */
