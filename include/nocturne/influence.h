@@ -170,6 +170,7 @@ typedef struct noc_region_params {
  *   point:X,Y                 the ground there, else the highest surface
  *   point:X,Y,Z               that place, as a luxmeter that is held level
  *   point:X,Y,Z,NX,NY,NZ      the same, facing that way
+ *   point:X,Y,CRS             each of them with X, Y, Z in a CRS that PROJ reads; the normal is in the scene's axes
  *   pixel:X,Y                 the surface that the camera sees at that place of its picture, whose first pixel is 0,0
  *   rect:X0,Y0,X1,Y1          surfaces that its pixels from the first to the second see, each pixel as much as another
  *   object:ID                 all outer surfaces of an object
@@ -266,8 +267,8 @@ NOC_API noc_status noc_ranking_get_classes(noc_ranking *ranking, noc_influence_c
 
 /* These rows, then what the kinds of emitters bring, the sky, the sum and what classes of surfaces get (if there are
  * any: m2 of them and of all, too), as CSV with a head of names: what nocturne influence --csv writes. Places are in
- * the scene's CRS, local metres where it has none; the report, which may be NULL, tells of lamps. free() it. NULL: no
- * memory, or a pointer that should not be NULL, which is reported. */
+ * the scene's CRS, which the column crs names, local metres where it has none; the report, which may be NULL, tells of
+ * lamps. free() it. NULL: no memory, or a pointer that should not be NULL, which is reported. */
 NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
                                 size_t count, const noc_influence_sum *sum, const noc_influence_class *classes,
                                 size_t class_count);

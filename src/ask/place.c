@@ -1,6 +1,7 @@
 /* Regions that are places: a point, and what pixels see. */
 #include "ask/ask.h"
 
+#include <ctype.h>
 #include <math.h>
 
 #define FARTHEST 1e6 /* m; polygons have cells whose numbers are of 32 bits */
@@ -14,7 +15,13 @@ noc_status ask_to_local(const asked *a, double xyz[3]) {
     noc_status status = none ? NOC_OK : noc_scene_to_local(a->scene, a->params->crs, xyz);
     for (int k = 0; k < 3 && !status; k++)
         if (!(fabs(xyz[k]) < FARTHEST))
-            status = noc_error(a->log, NOC_ERR_ARGUMENT, "region: it lies more than 1000 km away from the scene");
+            status = noc_error(a->log, NOC_ERR_ARGUMENT,
+                               "region: in %.60s it lies more than 1000 km away from the scene%s%.60s",
+                               a->params->crs    ? a->params->crs
+                               : *info.given_crs ? info.given_crs
+                                                 : "local metres",
+                               a->params->crs && *info.given_crs ? ", whose CRS is " : "",
+                               a->params->crs ? info.given_crs : "");
     return status;
 }
 
@@ -44,7 +51,16 @@ static noc_status add_under(const asked *a, const double at[3], double reach) {
                    : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no surface at point:%.60s", a->text);
 }
 
-noc_status ask_point(const asked *a) {
+/* Where the numbers end and a CRS begins, as in "9.18,48.78,EPSG:4326": behind a comma, by a letter. NULL: there is
+ * none. */
+static const char *find_crs(const char *text) {
+    for (const char *p = strchr(text, ','); p; p = strchr(p + 1, ','))
+        if (isalpha((unsigned char)p[1 + strspn(p + 1, " ")]))
+            return p + 1 + strspn(p + 1, " ");
+    return NULL;
+}
+
+static noc_status add_point(const asked *a) {
     double n[6] = { 0, 0, 0, 0, 0, 1 }, ground;
     bool turned = noc_text_numbers(a->text, ',', 6, n), placed = turned || noc_text_numbers(a->text, ',', 3, n);
     if (!placed && !noc_text_numbers(a->text, ',', 2, n))
@@ -63,6 +79,21 @@ noc_status ask_point(const asked *a) {
     bool found = noc_scene_ground(a->scene, n[0], n[1], &ground);
     n[2] = found ? ground + 0.02 : info.bounds_max[2] + 1;
     return add_under(a, n, found ? 0.1 : info.bounds_max[2] - info.bounds_min[2] + 2);
+}
+
+noc_status ask_point(const asked *a) {
+    const char *crs = find_crs(a->text), *end = crs;
+    char numbers[400];
+    if (!crs)
+        return add_point(a);
+    while (*--end != ',') {}
+    noc_region_params params = *a->params;
+    asked in_crs = *a;
+    params.crs = crs;
+    in_crs.params = &params;
+    in_crs.text = numbers;
+    noc_snprintf(numbers, sizeof(numbers), "%.*s", (int)NOC_MIN(end - a->text, 399), a->text);
+    return add_point(&in_crs);
 }
 
 /* ---- pixels ---- */

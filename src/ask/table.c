@@ -52,7 +52,9 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
     csv_text(out, lamp ? lamp->street : "");
     csv_text(out, lamp ? lamp->file : "");
     csv_text(out, lamp ? lamp->profile : "");
-    fputs(",\n", out);
+    putc(',', out);
+    csv_text(out, info.given_crs);
+    putc('\n', out);
 }
 
 /* A line that is no light's. area: of what gets it, m2; NaN: that is no area. */
@@ -63,7 +65,7 @@ static void csv_rest(FILE *out, const char *name, const char *kind, noc_estimate
         csv_number(out, numbers[k], -1);
     fputs(",,,,,,,\"\",\"\",\"\",\"\"", out);
     csv_number(out, area, -1);
-    putc('\n', out);
+    fputs(",\"\"\n", out);
 }
 
 char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows, size_t count,
@@ -79,7 +81,7 @@ char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const 
     if (!out)
         return NULL;
     fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile,"
-          "area\n",
+          "area,crs\n",
           out);
     for (size_t i = 0; i < count; i++)
         csv_row(out, scene, report, &rows[i], i + 1);

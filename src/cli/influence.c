@@ -6,8 +6,9 @@
 
 #define A influence_args
 static const noc_option own_options[] = {
-    { "region", "Influence", NOC_OPTION_TEXT, offsetof(A, region), 0, 0, NULL, "REGION",
-      "what is asked about: point:X,Y, pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE|WKT" },
+    { "region", "Influence", NOC_OPTION_TEXTS, offsetof(A, regions), 0, 0, NULL, "REGION",
+      "what is asked about: point:X,Y[,CRS], pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE|WKT; may "
+      "be given several times" },
     { "class", "Influence", NOC_OPTION_TEXT, offsetof(A, classes), 0, 0, NULL, "NAMES",
       "of an object: surfaces of these classes alone, such as wall,roof" },
     { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",
@@ -116,20 +117,29 @@ static int parse_classes(influence_args *args) {
     return CLI_OK;
 }
 
+static int check_regions(const influence_args *args) {
+    size_t count = args->regions.count;
+    if (!count == !args->lamp)
+        return args->lamp ? cli_usage(&cli_influence, "--region and --lamp exclude each other")
+                          : cli_usage(&cli_influence, "--region is needed, point:X,Y, for one; or --lamp");
+    if (args->csv && count != 1)
+        return cli_usage(&cli_influence, args->lamp ? "--csv is for --region" : "--csv is for one --region");
+    for (size_t i = 0; args->classes && i < count + !count; i++)
+        if (args->lamp || strncmp(args->regions.text[i], "object:", 7) != 0)
+            return cli_usage(&cli_influence, "--class is for --region object:ID");
+    return CLI_OK;
+}
+
 static int check(influence_args *args) {
     render_args *render = &args->render;
     if (!render->common.input_count)
         return cli_usage(&cli_influence, "which city? builtin:city is the built-in one");
-    if (!args->region == !args->lamp)
-        return args->lamp ? cli_usage(&cli_influence, "--region and --lamp exclude each other")
-                          : cli_usage(&cli_influence, "--region is needed, point:X,Y, for one; or --lamp");
-    if (args->lamp && args->csv)
-        return cli_usage(&cli_influence, "--csv is for --region");
-    if (args->classes && (args->lamp || strncmp(args->region, "object:", 7) != 0))
-        return cli_usage(&cli_influence, "--class is for --region object:ID");
+    int status = check_regions(args);
+    if (status)
+        return status;
     if (args->json && influence_csv_alone(args))
         return cli_usage(&cli_influence, "--json and --csv - exclude each other: both write to standard output");
-    int status = parse_classes(args);
+    status = parse_classes(args);
     status = status ? status : cli_choose_camera(render);
     if (status)
         return status;
@@ -147,14 +157,12 @@ static bool show(void *user, const char *what, double done) {
 }
 
 /* The seen luminance is told of pixels alone: a point is seen by nobody. */
-static bool has_eye(const influence_args *args) {
-    return !strncmp(args->region, "pixel:", 6) || !strncmp(args->region, "rect:", 5);
-}
+static bool has_eye(const char *region) { return !strncmp(region, "pixel:", 6) || !strncmp(region, "rect:", 5); }
 
 /* Parts of the others weigh as much as their areas. */
-static bool has_area(const influence_args *args) { return !has_eye(args) && strncmp(args->region, "point:", 6) != 0; }
+static bool has_area(const char *region) { return !has_eye(region) && strncmp(region, "point:", 6) != 0; }
 
-static noc_status ask(influence_job *job) {
+static noc_status ask_region(influence_job *job) {
     influence_args *args = job->args;
     const render_args *render = &args->render;
     noc_region_params of = { .camera = &job->camera,
@@ -162,10 +170,10 @@ static noc_status ask(influence_job *job) {
                              .height = render->render.height,
                              .classes = args->class_bits,
                              .files = true };
-    noc_ranking_params params = { &render->render, has_eye(args) ? job->camera.eye : NULL };
+    noc_ranking_params params = { &render->render, has_eye(job->asked) ? job->camera.eye : NULL };
     noc_ranking_target target = { .seconds = args->time, .error = args->error };
     noc_progress progress = { show, job };
-    job->region = noc_region_find(job->view, job->scene, args->region, &of, job->log);
+    job->region = noc_region_find(job->view, job->scene, job->asked, &of, job->log);
     noc_ranking *ranking = job->region ? noc_ranking_create(job->view, job->region, &params) : NULL;
     if (!ranking)
         return NOC_ERR_ARGUMENT;
@@ -174,7 +182,7 @@ static noc_status ask(influence_job *job) {
     cli_progress_clear();
     job->rows = cli_alloc((size_t)args->top * sizeof(*job->rows));
     status = status ? status : noc_ranking_get(ranking, job->rows, (size_t)args->top, &job->count, &job->sum);
-    if (!status && has_area(args))
+    if (!status && has_area(job->asked))
         status = noc_ranking_get_classes(ranking, job->classes, NOC_CLASS_COUNT, &job->class_count);
     if (!status && !influence_csv_alone(args))
         status = influence_print(job);
@@ -185,6 +193,27 @@ static noc_status ask(influence_job *job) {
         status = status ? status : influence_write_csv(job);
     }
     noc_ranking_destroy(ranking);
+    return status;
+}
+
+/* One after the other; several in JSON are an array. */
+static noc_status ask(influence_job *job) {
+    const influence_args *args = job->args;
+    bool array = args->json && args->regions.count > 1;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < args->regions.count && !status; i++) {
+        if (array || i)
+            fputs(!array ? "\n" : i ? ",\n" : "[\n", stdout);
+        job->asked = args->regions.text[i];
+        job->class_count = 0;
+        status = ask_region(job);
+        free(job->rows);
+        job->rows = NULL;
+        noc_region_destroy(job->region);
+        job->region = NULL;
+    }
+    if (array && !status)
+        puts("]");
     return status;
 }
 
@@ -217,13 +246,11 @@ static int run(void *arguments) {
     influence_job job = { .args = args, .log = cli_log_create(&args->render.common) };
     noc_status failed = work(&job);
     cli_nothing_to_keep(false);
-    noc_region_destroy(job.region);
     noc_view_destroy(job.view);
     noc_device_destroy(job.device);
     noc_report_destroy(job.report);
     noc_scene_destroy(job.scene);
     noc_log_destroy(job.log);
-    free(job.rows);
     if (cli_interrupted()) {
         cli_error("interrupted");
         return CLI_INTERRUPTED + cli_interrupted();

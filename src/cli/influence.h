@@ -7,14 +7,15 @@
 /* Arguments of render that it takes, too, and its own. */
 typedef struct influence_args {
     render_args render;
-    const char *region, *lamp, *csv, *classes;
+    noc_texts regions;
+    const char *lamp, *csv, *classes;
     uint32_t class_bits; /* of classes; 0: the library's */
     bool json;
     int top;
     double time, error; /* s; relative */
 } influence_args;
 
-/* One question: inputs to table. */
+/* Inputs to tables. */
 typedef struct influence_job {
     influence_args *args;
     noc_log *log;
@@ -23,6 +24,7 @@ typedef struct influence_job {
     noc_device *device;
     noc_view *view;
     noc_camera camera;
+    const char *asked; /* the region that is answered now, and what is found of it */
     noc_region *region;
     noc_region_info region_info;
     noc_scene_info info;

@@ -113,7 +113,7 @@ static noc_status print_table(influence_job *job) {
     char a[64], b[64], region[100];
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
         return NOC_ERR_ARGUMENT;
-    noc_text_clean(region, sizeof(region), job->args->region);
+    noc_text_clean(region, sizeof(region), job->asked);
     printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
            *job->info.given_crs ? job->info.given_crs : "local metres");
     printf("%s lx ± %.2g by %s%s\n", cli_number(a, s->lux.value), s->lux.error, noc_text_many(b, s->emitters, "light"),
@@ -221,7 +221,7 @@ static void json_kinds(const noc_influence_sum *s) {
 static noc_status print_json(influence_job *job) {
     const noc_influence_sum *s = &job->sum;
     printf("{\"nocturne\": \"%s\", \"region\": ", noc_version());
-    cli_json_text(stdout, job->args->region);
+    cli_json_text(stdout, job->asked);
     json_text("crs", job->info.given_crs);
     printf(",\n ");
     json_estimate("lux", s->lux);

@@ -39,6 +39,8 @@ static void put_text(line *l, const char *text) {
         return;
     }
     putchar('"');
+    if (text && *text && strchr("=+-@", *text)) /* spreadsheets run it else: an apostrophe makes it text to them */
+        putchar('\'');
     for (const char *p = text ? text : ""; *p; p++) {
         if (*p == '"')
             putchar('"');

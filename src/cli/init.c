@@ -362,7 +362,7 @@ static int run(void *arguments) {
     char *path = cli_format("%s/city.yaml", folder);
     int status = CLI_OK;
     if (!access(path, F_OK)) {
-        cli_error("%.400s is there already and is left alone", path);
+        cli_error("%.400s is there already and is left alone: remove it for another, or name another folder", path);
         status = CLI_FAILURE;
     } else if (access(folder, W_OK | X_OK)) {
         cli_error("%.400s: this folder cannot be written: %s", named, strerror(errno));

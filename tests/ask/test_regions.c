@@ -109,6 +109,47 @@ static void places_face_as_they_are_said(void **state) {
     noc_region_destroy(r);
 }
 
+/* On the equator at the middle of zone 32: 500000 E, 0 N by the definition of UTM, and scaled by 0.9996 there. */
+static void points_in_another_crs(void **state) {
+    const world *w = *state;
+    noc_scene *s = noc_scene_create(w->log);
+    int terrain = of_class(s, NOC_CLASS_TERRAIN);
+    assert_int_equal(noc_scene_set_crs(s, "EPSG:32632", (double[3]){ 500000, 0, 0 }), NOC_OK);
+    Q("ground", terrain, -50, -50, 0, 100, 0, 0, 0, 100, 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    const world other = { w->log, s, own_view(s, 2, w->log), w->camera };
+    const double east = 0.9996 * 6378137 * 1e-4 * M_PI / 180;
+    static const struct {
+        const char *text;
+        double x, z;
+    } points[] = { { "point:9.0001,0,EPSG:4326", 1, 0 },
+                   { "point:9.0001,0,3, OGC:CRS84", 1, 3 },
+                   { "point:9.0001,0,3,0,0,-1,EPSG:4326", 1, 3 },
+                   { "point:500000,0", 0, 0 } };
+    for (size_t k = 0; k < NOC_COUNT(points); k++) {
+        noc_region_info i;
+        noc_region *r = find(&other, points[k].text, &i);
+        if (!r)
+            fail_msg("%s: %s", points[k].text, told);
+        assert_true(fabs(i.centre[0] - points[k].x * east) < 1e-3 && fabs(i.centre[1]) < 1e-3);
+        assert_true(fabs(i.centre[2] - points[k].z) < 1e-3);
+        noc_region_destroy(r);
+    }
+    static const struct {
+        const char *text, *says;
+    } wrong[] = { { "point:-600000,0", "in EPSG:32632 it lies more than 1000 km away" },
+                  { "point:0,50,EPSG:4326", "whose CRS is EPSG:32632" },
+                  { "point:9.0001,0,EPSG:4326x", "EPSG:4326x" } };
+    for (size_t k = 0; k < NOC_COUNT(wrong); k++) {
+        noc_region_info i;
+        assert_null(find(&other, wrong[k].text, &i));
+        if (!strstr(told, wrong[k].says))
+            fail_msg("%s: %s", wrong[k].text, told);
+    }
+    close_view(other.view);
+    noc_scene_destroy(s);
+}
+
 static void objects_are_their_surfaces_by_area(void **state) {
     const world *w = *state;
     noc_region_info i;
@@ -255,9 +296,13 @@ static void files_of_polygons(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_face_as_they_are_said),      cmocka_unit_test(objects_are_their_surfaces_by_area),
-        cmocka_unit_test(ground_is_what_is_seen_from_above), cmocka_unit_test(polygons_may_have_many_corners),
-        cmocka_unit_test(wrong_ones_say_what_is_wrong),      cmocka_unit_test(files_of_polygons),
+        cmocka_unit_test(places_face_as_they_are_said),
+        cmocka_unit_test(objects_are_their_surfaces_by_area),
+        cmocka_unit_test(ground_is_what_is_seen_from_above),
+        cmocka_unit_test(polygons_may_have_many_corners),
+        cmocka_unit_test(wrong_ones_say_what_is_wrong),
+        cmocka_unit_test(files_of_polygons),
+        cmocka_unit_test(points_in_another_crs),
     };
     return cmocka_run_group_tests(tests, open_world, close_world);
 }

@@ -21,6 +21,9 @@ result $? "a street is lit by its lamps, the stronger one first"
 grep -Eq '^ +[0-9.]+ ±[0-9.]+ +100.00 ±0.00 +2 lamps$' out && grep -q '^,"lamp","kind",' well.csv
 result $? "and both are told as one kind"
 
+head -n 1 well.csv | grep -q ',area,crs$' && [ "$(grep -c '"EPSG:32633' well.csv)" = 2 ]
+result $? "the table names the CRS of its places"
+
 awk -F, 'NR > 1 && $1 != "" { share += $7; lux += $5 } /"all"/ { all = $5 }
     END { exit !(share > .999 && share < 1.001 && lux > .999 * all && lux < 1.001 * all) }' well.csv
 result $? "shares sum up to 1, and lux to all"
@@ -76,6 +79,20 @@ assert j['objects'][0]['lumens'] > 100, j
 result $? "the same as JSON"
 expect "a lamp that is not there, and the nearest" 1 'is it "node/1' influence map.osm -q --lamp node/1
 expect "a region or a lamp" 2 'exclude each other' influence map.osm --lamp node/11 --region point:0,0
+
+run influence map.osm --map-surfaces -q --region point:13.4002,52.50003,EPSG:4326 --region "street:Well Lane"
+[ $status = 0 ] && grep -q '^point:13.4002,52.50003,EPSG:4326: at ' out && grep -q '^street:Well Lane: around ' out
+result $? "two regions have two answers"
+run influence map.osm --map-surfaces -q --json --region point:13.4003,52.50000,EPSG:4326 --region "street:Well Lane"
+[ $status = 0 ] && python3 -c "
+import json
+with open('out') as f:
+    j = json.load(f)
+assert [r['region'][:6] for r in j] == ['point:', 'street'] and all(r['lux'] > 0 for r in j), j
+"
+result $? "two regions in JSON are an array"
+expect "a table of two regions" 2 'csv is for one --region' influence map.osm --csv x.csv \
+    --region point:0,0 --region point:1,1
 
 expect "which region?" 2 "region is needed" influence builtin:city
 expect "which city?" 2 "which city" influence --region point:0,0

@@ -156,6 +156,23 @@ else
     skip "outlines of buildings" "no GDAL"
 fi
 
+# What begins like a formula is text to spreadsheets.
+printf 'id,lon,lat\n=1+1,8,50\n' >formula.csv
+run info --each-lamp --lamps formula.csv
+test $status = 0 && grep -q "^\"'=1+1\",mapped," out
+result $? "names of lamps are no formulas"
+
+# Degrees of three digits: a building is a point.
+cat >coarse.city.json <<'END'
+{"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],"translate":[0,0,0]},
+"metadata":{"referenceSystem":"https://www.opengis.net/def/crs/OGC/1.3/CRS84"},"CityObjects":{"b":{"type":"Building",
+"geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2,3]]]}]}},
+"vertices":[[4300,52070,9000],[4300,52070,9000],[4300,52070,9000],[4300,52070,9000]]}
+END
+run render coarse.city.json --size 16x9 -o coarse.png
+grep -q 'coarse.city.json: nothing of it is drawn: 1 of its surfaces collapse' err
+result $? "a model whose surfaces collapse is told of"
+
 # A line a lamp, mapped or inferred.
 cat >lit.osm <<'END'
 <osm version="0.6"><node id="1" lat="50" lon="8"/><node id="2" lat="50" lon="8.002"/>

@@ -126,7 +126,7 @@ END2
 else
     skip "init of a map" "no GDAL"
 fi
-expect "init does not overwrite" 1 'is left alone' init town city.gml
+expect "init does not overwrite" 1 'is left alone: remove it for another' init town city.gml
 [ "$(find town | wc -l)" = 2 ]
 result $? "init leaves its recipe alone" "$(ls -a town)"
 grep -q '"../city.gml" # CityGML' town/city.yaml

@@ -1,5 +1,6 @@
 /* A city with a map around it, by the files of both. */
 #include "../memory.h"
+#include "../told.h"
 
 #include <nocturne/nocturne.h>
 
@@ -40,6 +41,24 @@ static void test_map(void **state) {
     noc_scene_content(scene, without);
     assert_string_not_equal(with, without);
     noc_scene_destroy(scene);
+}
+
+/* A map around it lights a city without lamps. */
+static void test_no_lamps(void **state) {
+    (void)state;
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = keep, .level = NOC_LOG_WARN });
+    write_map("even.exr", 32, 16);
+    for (int with = 0; with < 2; with++) {
+        noc_import_params params = noc_import_default_params();
+        noc_scene *scene = noc_scene_create(log);
+        params.environment = with ? path : NULL;
+        params.infer_lamps = NOC_SWITCH_OFF;
+        told[0] = 0;
+        assert_int_equal(noc_scene_load(scene, (const char *[]){ city }, 1, &params, NULL), NOC_OK);
+        assert_int_equal(!strstr(told, "nothing in the scene shines"), with);
+        noc_scene_destroy(scene);
+    }
+    noc_log_destroy(log);
 }
 
 static void expect_error(noc_status want, const char *says) {
@@ -85,8 +104,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_map), cmocka_unit_test(test_wrong),
-                                        cmocka_unit_test(test_memory) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_map), cmocka_unit_test(test_no_lamps),
+                                        cmocka_unit_test(test_wrong), cmocka_unit_test(test_memory) };
     const char *source = getenv("NOC_SOURCE");
     assert_non_null(mkdtemp(folder));
     snprintf(city, sizeof(city), "%s/tests/cli/city.gml", source ? source : ".");

@@ -285,7 +285,7 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     for (size_t i = 0; i < im->input_count; i++)
         buildings += im->inputs[i].file.buildings;
     if (!wanted || !(buildings > 0 || im->has_roads)) {
-        if (e->any || fate->given)
+        if ((e->any || fate->given) && !im->scene->environment)
             noc_warn(
                 im->log, "nothing in the scene shines: %s",
                 wanted ? "the inputs hold no lamps that could be used, and no streets or buildings to place some along"
@@ -302,8 +302,8 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     if (lights > 0)
         noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
     else
-        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines",
-                 usable);
+        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found%s", usable,
+                 im->scene->environment ? "" : ": nothing in the scene shines");
     return NOC_OK;
 }
 
@@ -379,6 +379,24 @@ static noc_status ask_roads(importer *im) {
     return status;
 }
 
+/* A file of which nothing is drawn because its coordinates are too coarse for what they outline. */
+static void warn_of_collapsed(const importer *im) {
+    for (size_t i = 0; i < im->input_count; i++) {
+        const input *in = &im->inputs[i];
+        for (size_t k = 0; k < geo_issues_count(in->issues) && !in->file.triangles; k++) {
+            const char *reason, *examples;
+            bool repaired;
+            size_t count;
+            if (geo_issues_get(in->issues, k, &reason, &repaired, &count, &examples) &&
+                !strcmp(reason, "collapsed ring"))
+                noc_warn(im->log,
+                         "%s: nothing of it is drawn: %zu of its surfaces collapse to a line or a point. Are its "
+                         "coordinates rounded? In degrees, five digits behind the point are 1 m",
+                         in->path, count);
+        }
+    }
+}
+
 static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
     noc_status stood = heights_of_surfaces(im);
@@ -391,6 +409,7 @@ static noc_status finish_lamps(importer *im) {
     if (!go_on(im, 0))
         return NOC_ERR_CANCELLED;
     warn_if_coarse(im);
+    warn_of_collapsed(im);
     noc_status status = repeat_lamps(im);
     if (!status)
         status = warn_of_doubles(im);
