@@ -112,6 +112,8 @@ void cli_catch_signals(void); /* the first signal is remembered, the second ends
 /* While there is nothing, an interruption is not waited on: half a second later the program ends. False when it starts.
  */
 void cli_nothing_to_keep(bool nothing);
+/* A file, or an empty folder, that such an end removes; NULL: none. The path must last until it is another's turn. */
+void cli_leave_nothing_at(const char *path);
 int cli_interrupted(void); /* its number, 0 if there was none */
 double cli_now(void);      /* wall clock, seconds */
 

@@ -370,12 +370,15 @@ static int run(void *arguments) {
     }
     if (!status) {
         cli_catch_signals();
+        cli_leave_nothing_at(there ? NULL : folder);
         cli_nothing_to_keep(true);
         cli_progress_start(args->common.quiet);
         args->import.progress = (noc_progress){ cli_load_progress, NULL };
         noc_log *log = cli_log_create(&args->common);
         status = write_recipe(args, folder, path, log);
         noc_log_destroy(log);
+        cli_nothing_to_keep(false);
+        cli_leave_nothing_at(NULL);
     }
     if (status && !there)
         rmdir(folder);

@@ -100,8 +100,12 @@ enum { SIGNALS = sizeof(signals) / sizeof(*signals) };
 static volatile sig_atomic_t nothing_to_keep;
 static timer_t grace;
 static bool has_grace;
+static const char *volatile made; /* what is not to be left behind */
 
 static void on_grace(int number) {
+    const char *path = made;
+    if (path && unlink(path))
+        rmdir(path);
     static const char text[] = "\nnocturne: interrupted: nothing was saved\n";
     ssize_t written = write(STDERR_FILENO, text + !on_screen, sizeof(text) - 1 - !on_screen);
     (void)written, (void)number;
@@ -113,6 +117,8 @@ static void set_grace(long ns) {
     if (has_grace)
         timer_settime(grace, 0, &when, NULL);
 }
+
+void cli_leave_nothing_at(const char *path) { made = path; }
 
 void cli_nothing_to_keep(bool nothing) {
     nothing_to_keep = nothing;

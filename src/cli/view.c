@@ -174,7 +174,9 @@ static noc_status load(void *user, noc_scene *scene, const noc_progress *progres
     import->each_lamp = true; /* for the cards of lamps */
     bool wet = import->wet;   /* rain is the viewer's, who can end it */
     import->wet = false;
+    cli_nothing_to_keep(true); /* what reads may not be asked to stop */
     noc_status status = cli_load_city(&args->render, scene, progress, report);
+    cli_nothing_to_keep(false);
     import->wet = wet;
     atomic_store(&args->lines->loaded, true);
     return status;
@@ -264,6 +266,7 @@ static char *write_page(const char *link) {
 static void open_browser(view_args *args, const char *link) {
     if (!(args->page = write_page(link)))
         return;
+    cli_leave_nothing_at(args->page);
     char program[] = "xdg-open", *copy = cli_format("file://%s", args->page), *words[] = { program, copy, NULL };
     pid_t child;
     if (posix_spawnp(&child, program, NULL, NULL, words, environ))
@@ -314,6 +317,7 @@ static int view(view_args *args, noc_log *log) {
     viewer_params params = { args->address, args->port, args->clients, args->token, ended, listening, say, args };
     noc_status status = viewer_run(&source, &params, log);
     free((void *)source.given);
+    cli_leave_nothing_at(NULL);
     if (args->page)
         unlink(args->page);
     free(args->page);

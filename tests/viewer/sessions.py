@@ -394,6 +394,16 @@ def test_a_browser_is_given_no_secret_in_its_arguments(p):
         view.terminate()
         view.wait()
         assert not os.path.exists(page), page
+        # ended while a city of 1.5 km is built, which it does not wait for
+        os.unlink(os.path.join(folder, "arguments"))
+        view = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:city", "--city-size", "1500", "--port",
+                                 "0", "--open"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                env=environment)
+        view.stdout.readline()
+        view.terminate()
+        said_last = view.communicate()[1]
+        assert view.returncode == 143 and "interrupted" in said_last, (view.returncode, said_last)
+        assert not [name for name in os.listdir(folder) if name.startswith("nocturne-")], os.listdir(folder)
 
 
 def test_a_link_that_nobody_gets(p):
