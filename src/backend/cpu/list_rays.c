@@ -159,7 +159,7 @@ static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
             t->draws[i].r.w[l] *= 1 - t->reused[t->draws[i].block][l];
 }
 
-/* What surfaces let through of the rays that arrived. */
+/* Multiplies W of rays that arrived by the transmittance on their way. */
 static void weaken_rays(const stage_run *run, tile_rays *t) {
     float through[MANY_BLOCKS][BLOCK];
     for (int first = 0; first < t->count; first += MANY_BLOCKS) {

@@ -128,27 +128,12 @@ static size_t bytes_of(const void *structure) {
 
 /* ---- rays ---- */
 
-static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
-    memcpy(r->org_x, rays->o, sizeof(rays->o));
-    memcpy(r->dir_x, rays->d[0], sizeof(rays->d[0]));
-    memcpy(r->dir_y, rays->d[1], sizeof(rays->d[1]));
-    memcpy(r->dir_z, rays->d[2], sizeof(rays->d[2]));
-    for (int l = 0; l < BLOCK; l++) {
-        r->tnear[l] = 0;
-        r->time[l] = 0;
-        r->tfar[l] = far;
-        r->mask[l] = UINT32_MAX;
-        r->id[l] = 0;
-        r->flags[l] = 0;
-    }
-}
-
 static void no_hits(struct RTCRayHit16 *h) {
     memset(h->hit.geomID, 0xff, sizeof(h->hit.geomID));
     memset(h->hit.instID, 0xff, sizeof(h->hit.instID));
 }
 
-/* Of the lanes that have one. */
+/* Copies what a packet has hit; lanes that it missed keep what they have. */
 static void take_hits(const embree_generation *g, embree_layer layer, const struct RTCRayHit16 *h, uint32_t valid,
                       hitblock *hits) {
     for (int l = 0; l < BLOCK; l++) {
@@ -178,7 +163,7 @@ static void closest(void *structure, noc_ray_world in, const rayblock *rays, flo
         hits->u[l] = hits->v[l] = 0;
         hits->t[l] = far;
     }
-    fill_rays(rays, far, &h.ray);
+    embree_fill_rays(rays, far, &h.ray);
     no_hits(&h);
     rt_intersect16(lanes, g->base->rtc[LAYER_SOLID], &h, coherent);
     if (g->top[LAYER_SOLID] && all)

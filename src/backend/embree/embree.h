@@ -68,9 +68,24 @@ noc_status noc_embree_fail(embree_structure *s, enum RTCError code, const char *
 bool noc_embree_room(int threads, size_t bytes);
 /* Can TBB's threads be started? */
 bool noc_embree_room_for_threads(int threads);
+/* A packet of a block's rays, numbered by their lanes. */
+static inline void embree_fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
+    memcpy(r->org_x, rays->o, sizeof(rays->o));
+    memcpy(r->dir_x, rays->d[0], sizeof(rays->d[0]));
+    memcpy(r->dir_y, rays->d[1], sizeof(rays->d[1]));
+    memcpy(r->dir_z, rays->d[2], sizeof(rays->d[2]));
+    for (unsigned l = 0; l < BLOCK; l++) {
+        r->tnear[l] = r->time[l] = 0;
+        r->tfar[l] = far;
+        r->mask[l] = UINT32_MAX;
+        r->id[l] = l;
+        r->flags[l] = 0;
+    }
+}
+
 /* through.c: filters of geometries whose surfaces let light through. first: their first triangle in the scene. */
 void noc_embree_let_through(RTCGeometry geometry, size_t first);
-/* Nearest hit on the way of rays, for which `h` has one already. chance: as noc_tracer.closest. */
+/* Finds hits nearer than those that h has, of rays as embree_fill_rays numbers them. chance: as noc_tracer.closest. */
 void noc_embree_meet(RTCScene scene, const noc_scene *of, const int *valid, const uint32_t *chance,
                      struct RTCRayHit16 *h);
 /* Multiplies `through` by what the scene lets through of each segment. */

@@ -7,30 +7,21 @@
 
 #include "noc_config.h"
 
+/* A context of a query: filters of geometries are handed it back, and find what else their caller put behind it in a
+ * struct that begins with one. */
 #if NOC_EMBREE >= 4
 #include <embree4/rtcore.h>
 
-/* coherent: all rays go about the same way. */
-static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays, bool coherent) {
-    struct RTCIntersectArguments args;
-    rtcInitIntersectArguments(&args);
-    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcIntersect16(valid, scene, rays, &args);
-}
-
-static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay16 *rays) {
-    struct RTCOccludedArguments args;
-    rtcInitOccludedArguments(&args);
-    rtcOccluded16(valid, scene, rays, &args);
-}
-
-/* What filters of geometries find their ray's context in, at the beginning of what is theirs. */
 typedef struct RTCRayQueryContext rt_context;
-static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+
+/* coherent: all rays go about the same way. */
+static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays,
+                                     bool coherent) {
     struct RTCIntersectArguments args;
     rtcInitRayQueryContext(context);
     rtcInitIntersectArguments(&args);
     args.context = context;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, rays, &args);
 }
 
@@ -45,24 +36,13 @@ static inline void rt_occluded16_in(rt_context *context, const int *valid, RTCSc
 #else
 #include <embree3/rtcore.h>
 
-/* coherent: all rays go about the same way. */
-static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays, bool coherent) {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid, scene, &context, rays);
-}
-
-static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay16 *rays) {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded16(valid, scene, &context, rays);
-}
-
-/* What filters of geometries find their ray's context in, at the beginning of what is theirs. */
 typedef struct RTCIntersectContext rt_context;
-static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+
+/* coherent: all rays go about the same way. */
+static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRayHit16 *rays,
+                                     bool coherent) {
     rtcInitIntersectContext(context);
+    context->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, context, rays);
 }
 
@@ -80,5 +60,15 @@ static inline void rt_occluded_stream(RTCScene scene, struct RTCRay *rays, unsig
     rtcOccluded1M(scene, &context, rays, count, sizeof(*rays));
 }
 #endif
+
+static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays, bool coherent) {
+    rt_context context;
+    rt_intersect16_in(&context, valid, scene, rays, coherent);
+}
+
+static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay16 *rays) {
+    rt_context context;
+    rt_occluded16_in(&context, valid, scene, rays);
+}
 
 #endif

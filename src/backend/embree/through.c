@@ -1,7 +1,6 @@
-/* Rays and surfaces that let light through: filters that Embree calls at each hit on a triangle of such a surface.
- * Of the triangles that a ray comes to they accept the one that is met, or none, and multiply the others'
- * transmittances. Their order is Embree's. Each triangle is told once: builds of medium quality keep one reference to
- * it. */
+/* Surfaces that let light through. Embree calls a filter at each hit on one. `meet` decides whether a camera's ray
+ * stops there; `pass` multiplies a shadow ray's transmittance and lets it go on. Hits come in any order, and each
+ * triangle once: a build of medium quality splits none. */
 #include "backend/embree/embree.h"
 
 struct core_context {
@@ -83,9 +82,7 @@ void noc_embree_let_through(RTCGeometry geometry, size_t first) {
 void noc_embree_meet(RTCScene scene, const noc_scene *of, const int *valid, const uint32_t *chance,
                      struct RTCRayHit16 *h) {
     passing p = { .scene = of, .chance = chance };
-    for (unsigned l = 0; l < BLOCK; l++)
-        h->ray.id[l] = l;
-    rt_intersect16_in(&p.context, valid, scene, h);
+    rt_intersect16_in(&p.context, valid, scene, h, false);
 }
 
 void noc_embree_trace_through(RTCScene scene, const noc_scene *of, const rayblock *rays, uint32_t valid,
@@ -93,19 +90,8 @@ void noc_embree_trace_through(RTCScene scene, const noc_scene *of, const raybloc
     passing p = { .scene = of, .through = through };
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRay16 r;
-    for (unsigned l = 0; l < BLOCK; l++) {
+    for (int l = 0; l < BLOCK; l++)
         lanes[l] = -(int)(valid >> l & 1);
-        r.org_x[l] = rays->o[0][l];
-        r.org_y[l] = rays->o[1][l];
-        r.org_z[l] = rays->o[2][l];
-        r.dir_x[l] = rays->d[0][l];
-        r.dir_y[l] = rays->d[1][l];
-        r.dir_z[l] = rays->d[2][l];
-        r.tnear[l] = r.time[l] = 0;
-        r.tfar[l] = 1;
-        r.mask[l] = UINT32_MAX;
-        r.id[l] = l;
-        r.flags[l] = 0;
-    }
+    embree_fill_rays(rays, 1, &r);
     rt_occluded16_in(&p.context, lanes, scene, &r);
 }
