@@ -95,15 +95,16 @@ static bool is_none(const levels *l, size_t first, size_t end, double *off) {
     return against && (double)against >= NEARLY_ALL * (double)asked && fabs(*off) > OFF;
 }
 
-static void lay(const levels *l, size_t first, size_t end) {
+/* off: what they are above their surroundings; a corner around which nothing tells a height moves by as much. */
+static void lay(const levels *l, size_t first, size_t end, double off) {
     noc_scene *s = l->scene;
     for (size_t i = first; i < end; i++) {
         size_t m = l->all.data[i].mesh;
         for (size_t v = s->meshes.data[m].first_vertex; v < noc_mesh_end_vertex(s, m); v++) {
             float *p = s->positions.data + 3 * v;
             double z, distance;
-            if (told(l, p[0], p[1], &z, &distance))
-                p[2] = (float)(z + LIFT);
+            bool known = told(l, p[0], p[1], &z, &distance);
+            p[2] = (float)((known ? z : p[2] - off) + LIFT);
         }
     }
 }
@@ -129,7 +130,7 @@ static noc_status lay_levels(levels *l, double zero, city_level_fn tell, void *u
         bool many = end - first >= MANY && 2 * (end - first) >= l->all.len;
         if (!(fabs(z - zero) <= LEVEL || many) || !is_none(l, first, end, &off))
             continue;
-        lay(l, first, end);
+        lay(l, first, end, off);
         moved = true;
         for (size_t i = first; i < end; i++)
             tell(user, l->scene->meshes.data[l->all.data[i].mesh].name, z - zero, off);

@@ -121,8 +121,8 @@ static void laid_at_the_feet(void **state) {
     expect_height(s, "lawn", 40, 40, 0.05);
     expect_height(s, "pond", 40, 40, 0.05);
     assert_non_null(strstr(told,
-                           "3 surfaces of roads, lawns or water (road) lie level at 0.00 m, 40 m below what stands "
-                           "around them"));
+                           "3 surfaces of roads, lawns or water, such as \"road\", level at 0.00 m, 40 m below what "
+                           "stands around"));
     assert_true(s->bounds_min[2] + s->origin[2] > 39);
     noc_scene_destroy(s);
     s = load(&m, "", true, NOC_ERR_FORMAT);
@@ -147,6 +147,17 @@ static void laid_on_terrain(void **state) {
     model m = street(40, 0);
     flat(&m, "terrain", "TINRelief", -50, -50, 38.5, 200, 150);
     flat(&m, "road", "Road", -40, 12, 0, 100, 8);
+    noc_scene *s = load(&m, "", false, NOC_OK);
+    expect_height(s, "road", 38.52, 38.52, 0.01);
+    noc_scene_destroy(s);
+}
+
+/* Where the terrain ends the road goes on as high. */
+static void laid_beyond_terrain(void **state) {
+    (void)state;
+    model m = { .vertex_count = 0 };
+    flat(&m, "terrain", "TINRelief", 0, 0, 38.5, 50, 50);
+    flat(&m, "road", "Road", 20, 12, 0, 100, 8);
     noc_scene *s = load(&m, "", false, NOC_OK);
     expect_height(s, "road", 38.52, 38.52, 0.01);
     noc_scene_destroy(s);
@@ -186,7 +197,7 @@ static void left_where_it_lies(void **state) {
     for (size_t i = 0; i < NOC_COUNT(rows); i++) {
         noc_scene *s = load(rows[i].m, "", false, NOC_OK);
         expect_height(s, rows[i].name, rows[i].z, rows[i].z, 1e-3);
-        assert_null(strstr(told, "lie level"));
+        assert_null(strstr(told, "level at"));
         noc_scene_destroy(s);
     }
 }
@@ -249,9 +260,10 @@ static void blocks_in_the_air(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(laid_at_the_feet),  cmocka_unit_test(laid_along_a_slope), cmocka_unit_test(laid_on_terrain),
-        cmocka_unit_test(another_height),    cmocka_unit_test(left_where_it_lies), cmocka_unit_test(lamps_of_a_report),
-        cmocka_unit_test(blocks_in_the_air),
+        cmocka_unit_test(laid_at_the_feet),  cmocka_unit_test(laid_along_a_slope),
+        cmocka_unit_test(laid_on_terrain),   cmocka_unit_test(laid_beyond_terrain),
+        cmocka_unit_test(another_height),    cmocka_unit_test(left_where_it_lies),
+        cmocka_unit_test(lamps_of_a_report), cmocka_unit_test(blocks_in_the_air),
     };
     assert_non_null(mkdtemp(folder));
     log_ = noc_log_create(&(noc_log_params){ .message = keep, .level = NOC_LOG_WARN });

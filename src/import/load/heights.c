@@ -85,9 +85,9 @@ noc_status heights_of_surfaces(importer *im) {
         status = city_lay_level_surfaces(im->scene, l.in->first_mesh, l.in->end_mesh, -im->origin[2], tell_level, &l);
         if (l.count)
             noc_warn(im->log,
-                     "%s: %zu surfaces of roads, lawns or water (%s) lie level at %.2f m, %.0f m %s what stands around "
-                     "them: heights that are not known, it seems. They are laid on the ground that there is",
-                     l.in->path, l.count, l.example ? l.example : "without a name", l.z, fabs(l.off),
+                     "%s: %zu surface%s of roads, lawns or water, such as \"%.60s\", level at %.2f m, %.0f m %s what "
+                     "stands around: without a height, it seems, and laid on the ground",
+                     l.in->path, l.count, l.count == 1 ? "" : "s", l.example ? l.example : "", l.z, fabs(l.off),
                      l.off < 0 ? "below" : "above");
     }
     return status;
