@@ -175,6 +175,7 @@ static void test_transparency(void **state) {
         { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1], \"metallicFactor\": 0}, "
           "\"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 0.8}}",
           0.8f * 0.5f * 0.96f },
+        { "\"alphaMode\": 7, \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
         { "\"alphaMode\": \"BLEND\", \"emissiveFactor\": [1, 1, 1], \"pbrMetallicRoughness\": "
           "{\"baseColorFactor\": [1, 1, 1, 0.25]}",
           0 },
@@ -189,6 +190,7 @@ static void test_transparency(void **state) {
         assert_string_equal(l.error, "");
         assert_float_equal(l.scene->materials.data[0].transmittance, rows[i].transmittance, 1e-6);
         assert_false(l.scene->materials.data[0].cutout);
+        assert_int_equal(skipped_count(&l, "alpha mode that is not known"), strstr(rows[i].material, "7,") != NULL);
         assert_int_equal(skipped_count(&l, "transparent material that emits"), i + 1 == NOC_COUNT(rows));
         unload(&l);
         free(text);

@@ -28,14 +28,15 @@ static void no_textures(const gltf *g, const json_t *pbr, const json_t *m, const
  * in the colour that it has. cutoff: alpha of the texture under which there is no surface. */
 static void let_through(const gltf *g, const json_t *m, const double base[4], double luminance, const char *name,
                         bool textured, uint8_t *cutoff, noc_material *out) {
-    const char *mode = json_string_value(json_object_get(m, "alphaMode"));
+    const json_t *said = json_object_get(m, "alphaMode");
+    const char *mode = json_string_value(said);
     const json_t *glass = gltf_extension(m, "KHR_materials_transmission");
     bool blend = mode && !strcmp(mode, "BLEND"), mask = mode && !strcmp(mode, "MASK");
     double alpha = limited(base[3], 0, 1), least = mask ? limited(gltf_number(m, "alphaCutoff", 0.5), 0, 1) : 0.5;
     double clear = limited(gltf_number(glass, "transmissionFactor", 0), 0, 1);
     double through = clear * luminance * (1 - out->f0);
     *cutoff = 0;
-    if (mode && !blend && !mask && strcmp(mode, "OPAQUE"))
+    if (said && !blend && !mask && !(mode && !strcmp(mode, "OPAQUE")))
         geo_issue(g->issues, GEO_GUESSED, "alpha mode that is not known, taken as opaque", name);
     if (json_object_get(glass, "transmissionTexture"))
         geo_issue(g->issues, GEO_GUESSED, "texture of transmission, which is not read", name);
