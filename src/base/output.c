@@ -139,11 +139,11 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
         }
     }
     o->file = fd >= 0 ? fdopen(fd, "w+b") : NULL;
-    /* Who may read what was there may read this. Where a file system has no modes it is no more open than before. */
-    if (o->file && replaces && fchmod(fd, mode))
-        errno = 0;
-    if (o->file)
+    if (o->file) {
+        if (replaces) /* the umask may have taken some of it; a file system without modes keeps none */
+            fchmod(fd, mode);
         return NOC_OK;
+    }
     status = fail(path, "cannot be written", log);
     if (fd >= 0) {
         close(fd);

@@ -7,8 +7,7 @@
 #define A influence_args
 static const noc_option own_options[] = {
     { "region", "Influence", NOC_OPTION_TEXTS, offsetof(A, regions), 0, 0, NULL, "REGION",
-      "what is asked about: point:X,Y[,CRS], pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME, polygon:FILE|WKT; "
-      "may be given several times" },
+      "a place: point:X,Y[,CRS], pixel:X,Y, rect:X0,Y0,X1,Y1, object:ID, street:NAME or polygon:FILE|WKT; repeatable" },
     { "class", "Influence", NOC_OPTION_TEXT, offsetof(A, classes), 0, 0, NULL, "NAMES",
       "of an object: surfaces of these classes alone, such as wall,roof" },
     { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",
