@@ -5,7 +5,10 @@
 
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) {
     *w = (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
-    return w->keys && lamp_keys_count_unread(w->keys) ? NOC_OK : noc_no_memory(sink->log, place);
+    if (w->keys && lamp_keys_count_unread(w->keys))
+        return NOC_OK;
+    lamp_writer_free(w);
+    return noc_no_memory(sink->log, place);
 }
 
 void lamp_writer_free(lamp_writer *w) {
