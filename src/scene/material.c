@@ -1,8 +1,8 @@
 /* Materials, and what each class of surface is made of. */
 #include "scene/scene.h"
 
-/* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials).
- */
+/* Reflectances: typical values for dry surfaces (IESNA Lighting Handbook, building materials). The road is fitted to
+ * class R3 of CIE 144:2001 (Q0 .07, S1 1.11) at a driver's angle; tests/core/test_road_classes.c computes both. */
 #define CLASSES                                                                                                        \
     CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1)                                                            \
     CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1)                                                              \
@@ -13,7 +13,7 @@
     CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f)                                                         \
     CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1)                                              \
     CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1)                                                        \
-    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f)                                                        \
+    CLASS(NOC_CLASS_ROAD, "road", .073f, .073f, .073f, .04f, .8f)                                                      \
     CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f)                                                 \
     CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1)                                                            \
     CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1)                                                              \
@@ -42,10 +42,11 @@ noc_material noc_class_material(noc_class cls) {
     return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
 }
 
-/* A. Angstrom, "The albedo of various surfaces of ground", Geografiska Annaler 7 (1925) 323-342. The roughness is a
- * choice of ours between puddles and a film that follows the grains. */
+/* A. Angstrom, "The albedo of various surfaces of ground", Geografiska Annaler 7 (1925) 323-342. The roughness makes
+ * the road as light to a driver as class W2 of wet surfaces (Q0 .150; W. van Bommel, Road Lighting, Springer 2015): a
+ * film that follows the grains, without puddles. */
 noc_material noc_material_wet(const noc_material *dry) {
-    const float n2 = 1.333f * 1.333f, film = 0.15f;
+    const float n2 = 1.333f * 1.333f, film = 0.52f;
     noc_material m = dry ? *dry : noc_class_material(NOC_CLASS_OTHER);
     for (int i = 0; i < 3; i++)
         m.albedo[i] = m.albedo[i] / (n2 * (1 - m.albedo[i]) + m.albedo[i]);

@@ -48,7 +48,7 @@ static void add_materials(town *t) {
         { TM_AWNING, NOC_CLASS_INSTALLATION, .50f, .10f, .08f, 0, 1 },
         { TM_AWNING + 1, NOC_CLASS_INSTALLATION, .10f, .26f, .34f, 0, 1 },
         { TM_AWNING + 2, NOC_CLASS_INSTALLATION, .62f, .55f, .38f, 0, 1 },
-        { TM_ROAD, NOC_CLASS_ROAD, .095f, .095f, .10f, .04f, .55f },
+        { TM_ROAD, NOC_CLASS_ROAD, .073f, .073f, .077f, .04f, .8f },
         { TM_MARKING, NOC_CLASS_ROAD, .55f, .55f, .52f, .03f, .6f },
         { TM_SIDEWALK, NOC_CLASS_SIDEWALK, .25f, .24f, .22f, .02f, .7f },
         { TM_KERBSTONE, NOC_CLASS_SIDEWALK, .38f, .37f, .35f, 0, 1 },
