@@ -3,12 +3,13 @@
 
 #include <math.h>
 
-/* How many windows are lit at each full hour, over how many are at 21 h: a winter's working day, homes by when people
- * come home and go to bed, offices by their hours and cleaners, shops by theirs and by displays that stay lit. Ours:
- * of measured curves we know shapes (homes go dark from 22 h on, a few stay lit all night), no figures by use. */
+/* How many windows are lit at each full hour, over how many are at 21 h: a winter's working day. Flats from 16 to 8 h
+ * by the model of homes of Richardson, Thomson and Infield (2008, 2009), with some lights that are forgotten and stairs
+ * that are lit all night (docs/defaults.md). The rest is ours: offices by their hours and cleaners, shops by theirs and
+ * by displays that stay lit. */
 static const float hours[NOC_WINDOW_KIND_COUNT][24] = {
-    [NOC_WINDOW_FLAT] = { .45f, .26f, .16f, .12f, .12f, .22f, .55f, .8f, .6f, .4f, .3f, .28f,
-                          .3f,  .28f, .28f, .35f, .55f, .8f,  .95f, 1,   1,   1,   .9f, .7f },
+    [NOC_WINDOW_FLAT] = { .27f, .13f, .08f, .06f, .06f, .09f, .18f, .4f, .4f, .4f, .3f, .28f,
+                          .3f,  .28f, .28f, .35f, .35f, .65f, .85f, 1,   1,   1,   .9f, .6f },
     [NOC_WINDOW_OFFICE] = { .45f, .4f,  .38f, .38f, .4f,  .6f,  1.2f, 2.2f, 2.8f, 2.8f, 2.8f, 2.8f,
                             2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.3f, 1.7f, 1.3f, 1,    .75f, .55f },
     [NOC_WINDOW_SHOP] = { .6f,  .55f, .5f,  .5f,  .5f,  .7f,  1.2f, 1.8f, 2.4f, 2.8f, 2.8f, 2.8f,

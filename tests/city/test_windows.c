@@ -368,7 +368,7 @@ static void test_levels(void **state) {
         const city_window *v = &out.list.data[i];
         double y = .2126 * v->emission[0] + .7152 * v->emission[1] + .0722 * v->emission[2];
         lit += v->level < .35f;
-        assert_true(v->level >= 0 && v->level < 1 && y > 10 && y < 210);
+        assert_true(v->level >= 0 && v->level < 1 && y > 0 && y < 64);
     }
     assert_int_equal(out.list.len, 2000);
     assert_close((double)lit, 700, 75);
@@ -383,6 +383,54 @@ static void test_levels(void **state) {
     assert_true(same >= out.list.len);
     city_windows_free(&out);
     city_windows_free(&more);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* cd/m2 of a facade of that use; storey: of these windows alone, where it is not negative. The number of windows. */
+static size_t luminances(noc_building_use use, int storey, double *y) {
+    static walls w;
+    w.count = 0;
+    front(&w, 0, 1200, 0, 60);
+    city_windows out = { 0 };
+    size_t n = 0;
+    assert_int_equal(city_windows_make("h", use, w.t, w.count, &noc_window_default_params(), NULL, &out), NOC_OK);
+    for (size_t i = 0; i < out.list.len; i++) {
+        const float *e = out.list.data[i].emission;
+        if (storey < 0 || out.list.data[i].storey == storey)
+            y[n++] = .2126 * e[0] + .7152 * e[1] + .0722 * e[2];
+    }
+    city_windows_free(&out);
+    qsort(y, n, sizeof(*y), by_size);
+    return n;
+}
+
+static double mean_of(const double *y, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += y[i];
+    return sum / (double)n;
+}
+
+/* Exposure tables (ANSI PH2.7): homes EV 5 to 7, through glass 3 to 12 cd/m2, behind a curtain 1 to 7; shops and
+ * offices EV 7 to 8, 16 to 32 cd/m2, and bright displays twice that. */
+static void test_luminances(void **state) {
+    (void)state;
+    static double y[20000];
+    size_t n = luminances(NOC_USE_FLATS, -1, y);
+    print_message("# %zu flats: mean %.1f cd/m2, %.1f %.1f %.1f at 16, 50, 84 %%\n", n, mean_of(y, n), y[n * 16 / 100],
+                  y[n / 2], y[n * 84 / 100]);
+    assert_true(n > 5000 && y[n / 2] > 5 && y[n / 2] < 7.5);
+    assert_true(y[n * 16 / 100] > 1 && y[n * 16 / 100] < 3); /* the most by a closed curtain */
+    assert_true(y[n * 84 / 100] > 12 && y[n * 84 / 100] < 22);
+    assert_close(mean_of(y, n), 11, 1.5);
+    n = luminances(NOC_USE_OFFICES, 3, y);
+    assert_true(n > 200 && y[n / 2] > 16 && y[n / 2] < 32);
+    n = luminances(NOC_USE_SHOPS, 0, y);
+    assert_true(n > 100 && y[n / 2] > 16 && y[n / 2] < 64);
 }
 
 static void test_no_memory(void **state) {
@@ -405,10 +453,10 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),   cmocka_unit_test(test_pieces),    cmocka_unit_test(test_doubles),
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_curved),    cmocka_unit_test(test_party),
-        cmocka_unit_test(test_uses),   cmocka_unit_test(test_inside),    cmocka_unit_test(test_order),
-        cmocka_unit_test(test_levels), cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_grid),   cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
+        cmocka_unit_test(test_uses),   cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_levels), cmocka_unit_test(test_luminances), cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

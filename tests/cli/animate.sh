@@ -203,10 +203,11 @@ run render town.yaml --show class --no-jitter --eye 5,-35,408 --target 5,-10,401
 test "$(meta class-3.png pixels)" = "$(meta car.png pixels)" &&
     test "$(meta class-1.png pixels)" != "$(meta car.png pixels)"
 result $? "a car is where the picture's time has it"
-dark="--samples 8 --no-traffic --no-infer-lamps --sky 0"
+dark="--samples 8 --no-traffic --no-infer-lamps --sky 0 --window-lit 1"
 # shellcheck disable=SC2086
 run render town.yaml --animate --path night --fps 1 $dark -o hour-%d.exr
-run render town.yaml --no-traffic --no-infer-lamps --sky 0 --eye 5,-12,404 --target 5,0,403 --hour 4 --frames 8 -o 4.exr
+run render town.yaml --no-traffic --no-infer-lamps --sky 0 --window-lit 1 --eye 5,-12,404 --target 5,0,403 --hour 4 \
+    --frames 8 -o 4.exr
 for i in 1 3; do
     run compare hour-$i.exr 4.exr
     awk '/see no emitter/ { print $NF }' out

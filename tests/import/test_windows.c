@@ -291,6 +291,21 @@ static void test_share(void **state) {
     assert_true(noc_window_share(NOC_WINDOW_OFFICE, .35, 11) > noc_window_share(NOC_WINDOW_FLAT, .35, 11));
 }
 
+/* Flats against the model of British homes by Richardson, Thomson and Infield (2008, 2009; weekday, winter): rooms lit,
+ * over how many are at 21 h. Its people forget no light and there are no stairs, so there are some more, never less. */
+static void test_share_of_flats(void **state) {
+    (void)state;
+    static const struct {
+        int hour;
+        double rooms;
+    } crest[] = { { 17, .64 }, { 18, .84 }, { 19, .94 }, { 20, .97 }, { 22, .89 }, { 23, .58 },
+                  { 0, .19 },  { 1, .07 },  { 2, .04 },  { 3, .01 },  { 6, .08 },  { 7, .29 } };
+    for (size_t i = 0; i < NOC_COUNT(crest); i++) {
+        double over = noc_window_share(NOC_WINDOW_FLAT, .35, crest[i].hour) / .35;
+        assert_true(over >= crest[i].rooms && over < crest[i].rooms + .12);
+    }
+}
+
 /* The class that is seen at a window, and what it looks like: dark, it is a surface that reflects. */
 static void test_glass(void **state) {
     (void)state;
@@ -441,10 +456,11 @@ static void test_progress(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),     cmocka_unit_test(test_own),        cmocka_unit_test(test_panes),
-        cmocka_unit_test(test_ratio),    cmocka_unit_test(test_switched),   cmocka_unit_test(test_share),
-        cmocka_unit_test(test_glass),    cmocka_unit_test(test_no_memory),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_progress), cmocka_unit_test(test_same_views), cmocka_unit_test(test_seed),
+        cmocka_unit_test(test_made),           cmocka_unit_test(test_own),      cmocka_unit_test(test_panes),
+        cmocka_unit_test(test_ratio),          cmocka_unit_test(test_switched), cmocka_unit_test(test_share),
+        cmocka_unit_test(test_share_of_flats), cmocka_unit_test(test_glass),    cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_threads),        cmocka_unit_test(test_progress), cmocka_unit_test(test_same_views),
+        cmocka_unit_test(test_seed),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -38,7 +38,7 @@ def ask(c, what, timeout=180, **values):
 
 def test_who_lights_this(p):
     c = enter(p)
-    answer = ask(c, "pixel", id=1, pane=0, x=0.5, y=0.9)
+    answer = ask(c, "pixel", id=1, pane=0, x=0.4, y=0.62)
     assert answer["lux"] > 0 and len(answer["place"]) == 3 and answer["class"], answer
     shares = [row["share"] for row in answer["rows"]]
     assert abs(sum(shares) - 1) < 0.02 and all(row["error"] >= 0 for row in answer["rows"]), sum(shares)

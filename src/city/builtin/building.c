@@ -1,5 +1,6 @@
 /* The built-in city's houses: rows around a courtyard, corner houses, towers. */
 #include "city/builtin/town.h"
+#include "city/windows/windows.h"
 
 #include <math.h>
 
@@ -130,7 +131,7 @@ static void dormer(town *t, const town_wall *w, const house *h, double s, double
                        .level = town_next(&rng),
                        .often = t->often,
                        .colour = h->front.seed & 1 ? LIGHT_WARM : LIGHT_CANDLE,
-                       .luminance = h->front.seed & 2 ? 85 : 42 };
+                       .luminance = city_window_luminance(NOC_WINDOW_FLAT, town_next(&rng)) };
     town_wall_pane(t, TM_GLASS, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.03, &room);
 }
 

@@ -1,5 +1,6 @@
 /* The built-in city's walls: fronts with storeys of windows, shops at street level, cornices. */
 #include "city/builtin/town.h"
+#include "city/windows/windows.h"
 
 #include <math.h>
 
@@ -74,7 +75,6 @@ static double office_level(double u, bool busy) {
 
 /* Rooms are lit in groups: two windows of one flat share lamp and brightness, an office storey often works as one. */
 static town_room room_behind(const town *t, const town_facade *f, int storey, int column) {
-    static const double levels[] = { 20, 26, 34, 45, 60, 85, 120, 170 };
     uint32_t group = town_hash(f->seed, (uint32_t)(storey * 64 + (f->office ? column / 3 : column / 2)));
     town_rng rng = { group }, whole = { town_hash(f->seed, 7777u + (uint32_t)storey) };
     double u = town_next(&rng), v = town_next(&rng);
@@ -89,12 +89,12 @@ static town_room room_behind(const town *t, const town_facade *f, int storey, in
                    : v < 0.84 ? LIGHT_WHITE
                    : v < 0.94 ? LIGHT_NEUTRAL
                               : LIGHT_SCREEN;
-    int low = r.colour == LIGHT_SCREEN ? 0 : f->office ? 2 : 1, n = r.colour == LIGHT_SCREEN ? 2 : 7 - low;
-    r.luminance = levels[low + town_below(&rng, n)];
+    double brightness = town_next(&rng);
+    r.luminance = r.colour == LIGHT_SCREEN ? city_window_screen(brightness) : city_window_luminance(r.kind, brightness);
     return r;
 }
 
-/* Blinds and curtains take part of the pane, which stays dark. */
+/* Blinds and curtains take part of the pane, which stays dark. Those that cover it let some light through. */
 static void glass(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4],
                   double before) {
     town_room room = room_behind(t, f, storey, column);
@@ -107,6 +107,8 @@ static void glass(town *t, const town_wall *w, const town_facade *f, int storey,
         s1 -= width * town_range(&rng, 0.3, 0.55);
     else if (u < 0.4)
         s0 += width * town_range(&rng, 0.3, 0.55);
+    else if (u < 0.7 && !f->office)
+        room.luminance *= city_window_curtain((u - 0.4) / 0.3);
     town_wall_rect(t, TM_GLASS, w, r[0], s0, z0, z1, before);
     town_wall_rect(t, TM_GLASS, w, s1, r[1], z0, z1, before);
     town_wall_rect(t, TM_GLASS, w, s0, s1, z1, r[3], before);
@@ -196,7 +198,7 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
             for (int i = 0; i < panes; i++) { /* one brightness a pane: displays, a poster, the door */
                 double a = r[0] + (r[1] - r[0]) * i / panes, b = r[0] + (r[1] - r[0]) * (i + 1) / panes;
                 double lo = town_chance(&rng, 0.35) ? r[2] + 0.7 : r[2] + 0.12;
-                room.luminance = level * (0.3 + 0.12 * town_below(&rng, 3));
+                room.luminance = city_window_luminance(NOC_WINDOW_SHOP, town_next(&rng));
                 town_wall_pane(t, TM_SHOP_DARK, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, &room);
                 if (i)
                     town_wall_rect(t, TM_FRAME, w, a - 0.05, a + 0.05, r[2], r[3], -0.17);

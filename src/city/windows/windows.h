@@ -107,6 +107,11 @@ uint64_t city_window_hash(uint64_t a, uint64_t b);
 uint64_t city_window_step(double length);
 /* A number of 0..1 that hash and salt decide. */
 double city_window_number(uint64_t hash, uint64_t salt);
+/* cd/m2 of a lit room behind panes of that kind, of a screen alone, and the share that a drawn curtain lets through, by
+ * a number of 0 to under 1. */
+double city_window_luminance(noc_window_kind kind, double u);
+double city_window_screen(double u);
+double city_window_curtain(double u);
 /* Level and emission of a window by its kind and hash. floor: a number that the windows of its storey share; pair: one
  * that its neighbour may share. */
 void city_window_shine(city_window *w, const building_use *use, uint64_t floor, uint64_t pair,
