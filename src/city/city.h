@@ -134,6 +134,7 @@ typedef struct city_road_lamp {
     uint32_t number; /* of those that the road could have, along it */
     double xy[2], facing[2];
     double height; /* m */
+    double flux;   /* of that of lamps that tell none */
     uint64_t rank; /* less is kept first, where two are too near */
 } city_road_lamp;
 

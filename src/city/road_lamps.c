@@ -4,8 +4,9 @@
  * what they give, and not for them): on one side where the carriageway is no wider than the lamps are high, by turns on
  * both up to one and a half times that, opposite each other beyond; 3 to 4 times their height apart. Heights by class
  * are usual ones (Thorn Lighting Handbook, roads: 10 m and more on main roads, 8 to 10 m on roads around and into
- * towns; 4 to 6 m where people walk), as shares of the height that lamps have for want of a better one; flux goes with
- * the square of it, so that the ground below gets as much light as everywhere. That is ours.
+ * towns; 4 to 6 m where people walk), as shares of the height that lamps have for want of a better one. Flux is such
+ * that with the defaults a straight carriageway of the class gets about the mean illuminance of the class of EN 13201-2
+ * that is usual there (tests/import/test_road_lux.c has them).
  *
  * A way is divided evenly, so its lamps hang on nothing but itself: its id, its line and what is beside it. Lamps of
  * two ways that come too near are told apart by class, then by a hash of the way's id. So no order of files or ways
@@ -32,12 +33,16 @@ enum {
                 1u << GEO_ROAD_LIVING | 1u << GEO_ROAD_PEDESTRIAN
 };
 
-/* Of lamp_height. */
-static const double heights[GEO_ROAD_CLASSES] = {
-    [GEO_ROAD_MOTORWAY] = 2,       [GEO_ROAD_TRUNK] = 5 / 3.,    [GEO_ROAD_PRIMARY] = 5 / 3.,
-    [GEO_ROAD_SECONDARY] = 5 / 3., [GEO_ROAD_TERTIARY] = 4 / 3., [GEO_ROAD_MINOR] = 1,
-    [GEO_ROAD_LIVING] = 3 / 4.,    [GEO_ROAD_SERVICE] = 1,       [GEO_ROAD_PEDESTRIAN] = 3 / 4.,
-    [GEO_ROAD_PATH] = 3 / 4.,      [GEO_ROAD_TRACK] = 1,         [GEO_ROAD_RAIL] = 0,
+/* Of the height and the flux that lamps have for want of better ones. */
+static const struct {
+    double height, flux;
+} rule[GEO_ROAD_CLASSES] = {
+    [GEO_ROAD_MOTORWAY] = { 2, 5.4 },       [GEO_ROAD_TRUNK] = { 5 / 3., 4 },
+    [GEO_ROAD_PRIMARY] = { 5 / 3., 2.7 },   [GEO_ROAD_SECONDARY] = { 5 / 3., 2.7 },
+    [GEO_ROAD_TERTIARY] = { 4 / 3., 1.17 }, [GEO_ROAD_MINOR] = { 1, .33 },
+    [GEO_ROAD_LIVING] = { 3 / 4., .5 },     [GEO_ROAD_SERVICE] = { 1, .33 },
+    [GEO_ROAD_PEDESTRIAN] = { 3 / 4., .5 }, [GEO_ROAD_PATH] = { 3 / 4., .5 },
+    [GEO_ROAD_TRACK] = { 1, .33 },          [GEO_ROAD_RAIL] = { 0, 0 },
 };
 
 /* Ways in an order that is their own: the lamps that are one too many are the same in whatever order ways come. */
@@ -75,7 +80,7 @@ static bool is_lit(const placing *p, const geo_road *road) {
     return p->by_class ? MOTOR_LIT >> road->cls & 1 && !road->link : road->lit == GEO_LIT_YES;
 }
 
-static double height_of(const placing *p, const geo_road *road) { return heights[road->cls] * p->params->height; }
+static double height_of(const placing *p, const geo_road *road) { return rule[road->cls].height * p->params->height; }
 
 static double spacing_of(const placing *p, const geo_road *road) { return SPACING * height_of(p, road); }
 
@@ -174,7 +179,9 @@ static bool propose(placing *p, const geo_road *road, double along, int side, ui
     double at[2], way[2];
     point_at(p, road, along, at, way);
     double off = side * (geo_road_width(road) / 2 + KERB);
-    city_road_lamp lamp = { .road = road, .number = number, .rank = rank, .height = height_of(p, road) };
+    city_road_lamp lamp = {
+        .road = road, .number = number, .rank = rank, .height = height_of(p, road), .flux = rule[road->cls].flux
+    };
     lamp.xy[0] = at[0] + off * way[1];
     lamp.xy[1] = at[1] - off * way[0];
     lamp.facing[0] = -side * way[1];

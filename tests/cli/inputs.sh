@@ -188,7 +188,7 @@ if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     result $? "info of each lamp"
     run info --each-lamp --infer-lamps --json lit.osm
     test $status = 0 && test "$(grep -c '"placed": "inferred".*"group": "lamps"' out)" = 6 &&
-        grep -q '"lumens": 5000,.*"kelvin": 3000, "watts": null,.*"road": "residential",.*"lon": 8.00' out
+        grep -q '"lumens": 1650,.*"kelvin": 3000, "watts": null,.*"road": "residential",.*"lon": 8.00' out
     result $? "info of each lamp as JSON"
     run build --infer-lamps lit.osm -o lit.noct && run info --each-lamp lit.noct
     test $status = 0 && test "$(wc -l <out)" = 8 &&

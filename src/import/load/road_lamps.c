@@ -35,13 +35,12 @@ static bool update(void *user, const char *what, double done) {
 
 static bool keep(importer *im, const city_road_lamp *place) {
     char *id = noc_format("inferred/%s/%u", place->road->id, place->number + 1);
-    double share = place->height / im->params->lamp_height;
     bool on_foot = place->road->cls == GEO_ROAD_PATH || place->road->cls == GEO_ROAD_PEDESTRIAN ||
                    place->road->cls == GEO_ROAD_LIVING;
     pending_lamp p = { .lamp = { .xyz = { place->xy[0], place->xy[1], NAN },
                                  .height = place->height,
                                  .direction = atan2(place->facing[0], place->facing[1]) * 180 / M_PI,
-                                 .lumens = im->params->lamp_lumens * share * share,
+                                 .lumens = im->params->lamp_lumens * place->flux,
                                  .watts = NAN,
                                  .kelvin = NAN,
                                  .rgb = { -1, -1, -1 },
