@@ -14,7 +14,8 @@ struct client {
     session *session;
     double messages, bytes; /* that it may send now */
     double counted;         /* when those were counted */
-    bool begun;
+    double spoke;           /* when the last one came */
+    bool begun, replaced;
     uint64_t heard; /* bytes of the connection that were counted */
     double room;    /* bytes of it that may come */
     double since;   /* when that was counted; 0: never */
@@ -24,11 +25,12 @@ struct client {
     char text[WIRE_TEXT];
 };
 
-client *client_create(struct lws *socket, const session_setup *setup, void (*wake)(void *user), void *user) {
+client *client_create(struct lws *socket, double now, const session_setup *setup, void (*wake)(void *), void *user) {
     client *c = calloc(1, sizeof(*c));
     if (!c)
         return NULL;
     c->socket = socket;
+    c->spoke = now;
     c->box = outbox_create(wake, user);
     c->session = c->box ? session_create(setup, c->box) : NULL;
     if (c->session)
@@ -48,6 +50,9 @@ void client_leave(client *c) {
     c->socket = NULL;
     session_end(c->session);
 }
+
+void client_replace(client *c) { c->replaced = true; }
+bool client_replaced(const client *c) { return c->replaced; }
 
 struct lws *client_socket(const client *c) {
     return c->socket;
@@ -81,6 +86,7 @@ static int take(client *c, const char **why) {
 }
 
 int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why) {
+    c->spoke = now;
     *why = "too many messages, or bytes, in a second";
     if (!client_counts(c, size, now)) /* pieces count, so that empty ones are no way around it */
         return POLICY;
@@ -94,6 +100,8 @@ int client_receive(client *c, const void *data, size_t size, bool binary, bool l
     c->size += size;
     return last ? take(c, why) : 0;
 }
+
+double client_spoke(const client *c) { return c->spoke; }
 
 bool client_heard(client *c, uint64_t bytes, double now) {
     /* a message of a byte has a head of six, and what came before it was looked at first is no flood */

@@ -8,21 +8,26 @@
 
 /* What a client may send, from second to second and at once. A page sends some 60 inputs and 60 acknowledgements a
  * second. */
-#define CLIENT_MESSAGES 400 /* a second */
-#define CLIENT_BYTES 200000 /* a second */
-#define CLIENT_AT_ONCE 3    /* seconds' worth of them */
-#define CLIENT_SILENCE 20   /* s that it may not read */
+#define CLIENT_MESSAGES 400  /* a second */
+#define CLIENT_BYTES 200000  /* a second */
+#define CLIENT_AT_ONCE 3     /* seconds' worth of them */
+#define CLIENT_SILENCE 20    /* s that it may not read */
+#define CLIENT_IDLE 20       /* s without a message after which another may have its place */
+#define CLIENT_REPLACED 4000 /* the code that it is closed with then */
 
 typedef struct client client;
 struct lws;
 
-/* The client of that connection, with a session of its own. wake: something is to be sent, from any thread. NULL: no
- * memory. */
-client *client_create(struct lws *socket, const session_setup *setup, void (*wake)(void *user), void *user);
+/* The client of that connection, with a session of its own, at that time. wake: something is to be sent, from any
+ * thread. NULL: no memory. */
+client *client_create(struct lws *socket, double now, const session_setup *setup, void (*wake)(void *), void *user);
 /* After its session has ended, which this waits for. */
 void client_destroy(client *c);
 /* The connection is gone: asks the session to end, and does not wait. */
 void client_leave(client *c);
+/* Another has its place: it is to be closed with CLIENT_REPLACED. */
+void client_replace(client *c);
+bool client_replaced(const client *c);
 
 struct lws *client_socket(const client *c); /* NULL once it has left */
 session *client_session(const client *c);
@@ -31,6 +36,9 @@ outbox *client_outbox(const client *c);
 /* A piece of a message; last: it is its end. 0, or the code of RFC 6455 with which the connection is to be closed, and
  * why. */
 int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why);
+
+/* When its last message came, or it did: pongs and pings are none. */
+double client_spoke(const client *c);
 
 /* A piece of a message, or what else counts as one, has come. false: more than may. */
 bool client_counts(client *c, size_t size, double now);

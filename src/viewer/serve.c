@@ -67,10 +67,30 @@ static client *enter(server *s, struct lws *socket) {
         i++;
     if (i == 2 * SERVE_CLIENTS)
         return NULL;
-    s->clients[i] = client_create(socket, &s->setup, wake, s);
+    s->clients[i] = client_create(socket, serve_now(), &s->setup, wake, s);
     s->connected += s->clients[i] != NULL;
     s->held += s->clients[i] != NULL;
     return s->clients[i];
+}
+
+/* Where all places are taken: closes the client that was idle longest, and its place is free at once. One that does not
+ * read is not waited for. */
+static void make_room(server *s) {
+    client *idle = NULL;
+    double before = serve_now() - CLIENT_IDLE;
+    for (int i = 0; s->connected == s->params->clients && i < 2 * SERVE_CLIENTS; i++) {
+        client *c = s->clients[i];
+        if (c && client_socket(c) && !client_replaced(c) && client_spoke(c) < before) {
+            before = client_spoke(c);
+            idle = c;
+        }
+    }
+    if (!idle)
+        return;
+    client_replace(idle);
+    s->connected--;
+    lws_callback_on_writable(client_socket(idle));
+    lws_set_timeout(client_socket(idle), PENDING_TIMEOUT_USER_OK, 2);
 }
 
 /* Bytes that came over a connection. */
@@ -97,8 +117,18 @@ static void attend(server *s) {
     collect(s);
 }
 
+/* Closes it with that code and reason: what a callback returns then. */
+static int close_with(struct lws *socket, int code, const char *why) {
+    unsigned char text[124];
+    int n = snprintf((char *)text, sizeof(text), "%s", why);
+    lws_close_reason(socket, (enum lws_close_status)code, text, n < (int)sizeof(text) ? (size_t)n : sizeof(text) - 1);
+    return -1;
+}
+
 static int send_next(struct lws *socket, client *c) {
     outbox_message message;
+    if (client_replaced(c))
+        return close_with(socket, CLIENT_REPLACED, "another has this place: nothing was done here for a while");
     if (!outbox_take(client_outbox(c), serve_now(), &message))
         return 0;
     int sent =
@@ -114,12 +144,7 @@ static int receive(struct lws *socket, client *c, const void *in, size_t size) {
     const char *why;
     bool last = lws_is_final_fragment(socket) && !lws_remaining_packet_payload(socket);
     int code = client_receive(c, in, size, lws_frame_is_binary(socket), last, serve_now(), &why);
-    if (!code)
-        return 0;
-    unsigned char text[124];
-    int n = snprintf((char *)text, sizeof(text), "%s", why);
-    lws_close_reason(socket, (enum lws_close_status)code, text, n < (int)sizeof(text) ? (size_t)n : sizeof(text) - 1);
-    return -1;
+    return code ? close_with(socket, code, why) : 0;
 }
 
 /* One that was asked for or not: it counts as a message. */
@@ -136,18 +161,45 @@ typedef struct connection {
 static int refuse_upgrade(server *s, struct lws *socket, const char *to) {
     int status = to && !strcasecmp(to, "websocket") ? guard_upgrade(s, socket) : HTTP_STATUS_BAD_REQUEST;
     if (!status)
+        make_room(s);
+    if (!status && (s->connected >= s->params->clients || s->held >= 2 * s->params->clients))
+        status = HTTP_STATUS_SERVICE_UNAVAILABLE;
+    if (!status)
         return 0;
     lws_return_http_status(socket, (unsigned)status, NULL);
     return 1;
+}
+
+static void forget_waiting(server *s, const struct lws *socket) {
+    int kept = 0;
+    for (int i = 0; i < s->waiting_count; i++)
+        if (s->waiting[i] != socket)
+            s->waiting[kept++] = s->waiting[i];
+    s->waiting_count = kept;
+}
+
+/* It has just done something. Where too many wait, the one that was idle longest is closed. */
+static void note_waiting(server *s, struct lws *socket) {
+    forget_waiting(s, socket);
+    if (s->waiting_count == SERVE_WAITING) {
+        lws_set_timeout(s->waiting[0], PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
+        forget_waiting(s, s->waiting[0]);
+    }
+    s->waiting[s->waiting_count++] = socket;
 }
 
 /* Connections that wait for us; beyond what it can hold they are closed. What is sent goes at once: a small message
  * would hold up the next one until the other side has said that it came, 40 ms later. */
 static int accept_all(server *s) {
     int on = 1;
-    for (int fd; (fd = accept4(s->listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK)) >= 0;) {
+    for (int i = 0; i < SERVE_ACCEPTED; i++) {
+        int fd = accept4(s->listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+        if (fd < 0)
+            break;
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-        lws_adopt_socket_vhost(s->host, fd);
+        struct lws *socket = lws_adopt_socket_vhost(s->host, fd);
+        if (socket)
+            note_waiting(s, socket);
     }
     return 0;
 }
@@ -158,16 +210,19 @@ static int callback(struct lws *socket, enum lws_callback_reasons reason, void *
     switch (reason) {
     case LWS_CALLBACK_RAW_RX_FILE: return accept_all(s);
     case LWS_CALLBACK_HTTP:
-    case LWS_CALLBACK_HTTP_WRITEABLE: return http_callback(socket, reason, &c->request, in, size);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+        note_waiting(s, socket);
+        return http_callback(socket, reason, &c->request, in, size);
+    case LWS_CALLBACK_WSI_DESTROY: forget_waiting(s, socket); return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return refuse_upgrade(s, socket, in);
-    case LWS_CALLBACK_ESTABLISHED: return (c->client = enter(s, socket)) ? 0 : -1;
+    case LWS_CALLBACK_ESTABLISHED: forget_waiting(s, socket); return (c->client = enter(s, socket)) ? 0 : -1;
     case LWS_CALLBACK_RECEIVE: return c->client ? receive(socket, c->client, in, size) : -1;
     case LWS_CALLBACK_RECEIVE_PONG: return c->client ? receive_pong(c->client, size) : -1;
     case LWS_CALLBACK_SERVER_WRITEABLE: return c->client ? send_next(socket, c->client) : -1;
     case LWS_CALLBACK_CLOSED:
         if (c->client) {
             client_leave(c->client);
-            s->connected--;
+            s->connected -= !client_replaced(c->client);
         }
         c->client = NULL;
         return 0;
@@ -202,8 +257,8 @@ static bool start(server *s) {
         .user = s,
         .options =
             LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS,
-        .fd_limit_per_thread = 2 * SERVE_CLIENTS + 64,
-        .max_http_header_pool = 32,
+        .fd_limit_per_thread = 2 * SERVE_CLIENTS + 2 * SERVE_HEADS,
+        .max_http_header_pool = SERVE_HEADS,
         .max_http_header_data = 4096,
         .timeout_secs = 10,
         .keepalive_timeout = 10,

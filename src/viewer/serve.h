@@ -9,7 +9,10 @@
 
 _Static_assert(OUTBOX_ROOM >= LWS_PRE, "libwebsockets writes before a message");
 
-enum { SERVE_CLIENTS = 64, SERVE_TOKEN = 128 };
+/* SERVE_HEADS: of requests, which libwebsockets reads at once. A connection has one from its begin on, so fewer may
+ * wait: SERVE_ACCEPTED more can come before those that are closed for them are gone. */
+enum { SERVE_CLIENTS = 64, SERVE_TOKEN = 128, SERVE_HEADS = 32, SERVE_ACCEPTED = 8 };
+enum { SERVE_WAITING = SERVE_HEADS - SERVE_ACCEPTED };
 
 typedef struct server {
     const viewer_params *params;
@@ -22,7 +25,9 @@ typedef struct server {
     char token[SERVE_TOKEN + 1];
     char host_name[256];                /* of this machine */
     client *clients[2 * SERVE_CLIENTS]; /* those that have left are joined when they have ended; NULL where free */
-    int connected, held;                /* clients; and with those that have left */
+    int connected, held;                /* clients; and with those that have left or are replaced */
+    struct lws *waiting[SERVE_WAITING]; /* connections that are no clients, the one that was idle longest first */
+    int waiting_count;
     lws_sorted_usec_list_t timer;
     atomic_bool lit; /* session_setup.lit; other threads write it, so it is apart from what this one reads */
 } server;
@@ -39,7 +44,7 @@ void guard_link(const server *s, char *link, size_t size);
 bool guard_host(const server *s, struct lws *socket);
 /* Does more belong to its request than a head? */
 bool guard_has_body(struct lws *socket);
-/* May it have the WebSocket? 0, or a status of HTTP. */
+/* May it have the WebSocket, if there is a place? 0, or a status of HTTP. */
 int guard_upgrade(const server *s, struct lws *socket);
 /* Are the texts equal? Takes as long wherever they differ. */
 bool guard_same(const char *a, const char *b);

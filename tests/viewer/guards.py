@@ -89,6 +89,35 @@ def test_slow_and_idle_connections_end(p):
     check_alive(p)
 
 
+def is_open(s):
+    """Nothing has come over that socket, not its end either."""
+    s.setblocking(False)
+    try:
+        return bool(s.recv(1))
+    except BlockingIOError:
+        return True
+    except ConnectionError:
+        return False
+
+
+def test_silent_connections_keep_nobody_out(p):
+    """The oldest are closed for those who come, so nobody waits until they time out."""
+    for begin in b"", b"GET / HTTP/1.1\r\nHost: 127":
+        sockets = [p.raw() for _ in range(200)]
+        for s in sockets:
+            try:
+                s.sendall(begin)
+            except ConnectionError: # it is closed already
+                pass
+        assert p.http("/")[0] == 200
+        c = joined(p)
+        assert is_open(sockets[-1]), "who came last was closed before the page came"
+        assert not is_open(sockets[0])
+        c.close()
+        for s in sockets:
+            s.close()
+
+
 def test_strange_requests_harm_nobody(p):
     randomly = random.Random(1)
     for request in (b"\0\0\0\0\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
@@ -145,6 +174,32 @@ def test_there_are_so_many_clients(p):
     for c in clients[1:]:
         c.close()
     check_alive(p)
+
+
+def test_idle_clients_keep_nobody_out(p):
+    """They answer pings, say that they do, and nothing else. Who is at work keeps its place."""
+    q = Program(SCENE, "--clients", "3")
+    working, idle = joined(q), [joined(q), joined(q)]
+    working.say("hello", width=64, height=36)
+    new, n, end = None, 0, time.monotonic() + LIMIT
+    while not new or new.status == 503:
+        assert time.monotonic() < end, "nobody came in"
+        time.sleep(0.1)
+        n += 1
+        working.say("input", n=n)
+        for c in idle:
+            c.frame(b"", opcode=9)
+            c.frame(b"", opcode=10)
+        new = Client(q)
+    assert new.status == 101, new.status
+    assert idle[0].closed() == 4000, "the one that was idle longest"
+    new.say("hello", width=64, height=36)
+    new.picture()
+    working.say("input", n=n + 1)
+    working.wait_for(lambda m: isinstance(m, Picture) and m.input == n + 1)
+    idle[1].say("hello", width=64, height=36)
+    idle[1].picture()
+    q.end()
 
 
 # ---- messages

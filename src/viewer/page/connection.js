@@ -4,6 +4,7 @@ import { Emitter } from './dom.js';
 
 const HEAD = 32;
 const LONGEST_WAIT = 8; // seconds between two tries
+const REPLACED = 4000; // the code with which it is closed when another client has its place
 export const PICTURE = 1,
     FILE = 2,
     LIGHTS = 3;
@@ -46,8 +47,8 @@ export class Connection extends Emitter {
     #tries = 0;
     #timer = 0;
 
-    // url: of the WebSocket. Tells open, closed (seconds until the next try), each kind of text message as t:KIND, and
-    // binary ones as binary.
+    // url: of the WebSocket. Tells open, closed (seconds until the next try; null: another client has this place, and
+    // it does not try again by itself), each kind of text message as t:KIND, and binary ones as binary.
     constructor(url) {
         super();
         this.url = url;
@@ -63,7 +64,7 @@ export class Connection extends Emitter {
         this.#socket = socket;
         socket.binaryType = 'arraybuffer';
         socket.onopen = () => this.emit('open');
-        socket.onclose = () => this.#closed();
+        socket.onclose = ({ code }) => this.#closed(code);
         socket.onmessage = (event) => this.#message(event.data);
     }
 
@@ -82,7 +83,8 @@ export class Connection extends Emitter {
         this.emit(`t:${message.t}`, message);
     }
 
-    #closed() {
+    #closed(code) {
+        if (code === REPLACED) return this.emit('closed', null);
         const seconds = Math.min(LONGEST_WAIT, 0.5 * 2 ** this.#tries) * (0.8 + 0.4 * Math.random());
         this.#tries++;
         this.emit('closed', seconds);

@@ -1,5 +1,5 @@
 // status.js: figures of the picture, progress, notes, and the bar that says the program is away.
-import { el, number, short } from './dom.js';
+import { button, el, number, short } from './dom.js';
 
 const WINDOW = 2000; // ms over which pictures are counted
 const SHOWN = { error: 12000, warning: 8000, info: 4000 };
@@ -63,13 +63,18 @@ export class Status {
     }
 
     #closed(seconds) {
+        this.#times = [];
+        if (seconds === null) {
+            this.#wait('Another viewer has this place, for nothing was done here for a while.', 0);
+            this.loading.lastChild.replaceWith(button('Come back', () => this.app.connection.connect()));
+            return;
+        }
         const known = this.app.state !== null;
         this.#wait(
             `${known ? 'The program is away.' : 'The program is not there, or this link is an old one.'} ` +
                 `Trying again in ${Math.max(1, Math.round(seconds))} s.`,
             0,
         );
-        this.#times = [];
     }
 
     #shown(picture) {
