@@ -1,7 +1,8 @@
 /* nocturne/text.h: numbers as people read them, and what people write. The program, the laboratory's reports, and
  * programs that offer the option tables (nocturne/option.h) speak alike by these.
  *
- * Nothing here depends on the locale, and nothing allocates. NULL where a text is needed reads as "". */
+ * Nothing here depends on the locale, and nothing but noc_text_save allocates. NULL where a text is needed reads as "".
+ */
 #ifndef NOCTURNE_TEXT_H
 #define NOCTURNE_TEXT_H
 
@@ -29,6 +30,11 @@ NOC_API int noc_text_yaml(char *text, size_t size, const char *from);
 NOC_API const char *noc_text_nearest(const char *word, const char *const *words, size_t count);
 /* Exactly count finite decimal numbers with the separator between them, such as "1.5,-3,2e3", and nothing else. */
 NOC_API bool noc_text_numbers(const char *text, char separator, size_t count, double *out);
+
+/* Writes size bytes into a file that has its name only when it is complete and on the disk: until then what was there
+ * stays. It keeps the permissions of the file that it replaces, and a symbolic link to it. NOC_ERR_IO or
+ * NOC_ERR_MEMORY after reporting to the log, and nothing is left. */
+NOC_API noc_status noc_text_save(const char *path, const char *text, size_t size, noc_log *log);
 
 #ifdef __cplusplus
 }

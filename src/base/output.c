@@ -1,5 +1,6 @@
 /* Files that appear under their name only when they are complete. */
 #include "base/output.h"
+#include <nocturne/text.h>
 
 #include <dirent.h>
 #include <errno.h>
@@ -161,7 +162,8 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
     int lock = fcntl(fileno(o->file), F_DUPFD_CLOEXEC, 0);
     /* What is still buffered may be what no longer fits on the disk. A name that is on the disk before the content is
      * would be an empty file after a power cut. EINVAL: the file system has nothing to write through. */
-    if (status == NOC_OK && (fflush(o->file) != 0 || (fsync(fileno(o->file)) != 0 && errno != EINVAL)))
+    if (status == NOC_OK &&
+        (ferror(o->file) || fflush(o->file) != 0 || (fsync(fileno(o->file)) != 0 && errno != EINVAL)))
         status = output_failed(o, log);
     if (fclose(o->file) != 0 && status == NOC_OK)
         status = output_failed(o, log);
@@ -173,4 +175,12 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
         close(lock);
     output_free(o);
     return status;
+}
+
+noc_status noc_text_save(const char *path, const char *text, size_t size, noc_log *log) {
+    output o;
+    noc_status status = output_open(&o, path, log);
+    if (status)
+        return status;
+    return output_close(&o, fwrite(text, 1, size, o.file) == size ? NOC_OK : output_failed(&o, log), log);
 }

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const char *const bench_section_names[BENCH_SECTIONS] = { "floor",     "passes",     "candidates", "lights", "windows",
                                                           "triangles", "resolution", "threads",    "isa",    "memory" };
@@ -161,23 +160,18 @@ static void print_section(const bench *b, bench_section section) {
     fflush(stdout);
 }
 
-/* A new file, which takes the name when it is whole. */
 static bool write_json(const bench *b, bool complete) {
-    const char *path = b->args->output;
-    char *fresh = cli_format("%s.%ld.new", path, (long)getpid()), shown[160];
-    FILE *f = fopen(fresh, "wx");
-    bool ok = f != NULL;
-    if (f) {
-        bench_json(b, complete, f);
-        ok = !ferror(f);
-        ok = !fclose(f) && ok && !rename(fresh, path);
-    }
-    if (!ok) {
-        cli_error("%s: cannot be written: %s", noc_text_clean(shown, sizeof(shown), path), strerror(errno));
-        unlink(fresh);
-    }
-    free(fresh);
-    return ok;
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        cli_no_memory();
+    bench_json(b, complete, out);
+    if (fclose(out) || !text)
+        cli_no_memory();
+    bool saved = !noc_text_save(b->args->output, text, size, b->log);
+    free(text);
+    return saved;
 }
 
 static int work(bench *b) {

@@ -221,9 +221,11 @@ static void last_line(FILE *said, char *line, size_t size) {
     }
 }
 
-/* Under its name only when it is whole. */
+/* Under its name only when it is whole, with the permissions of the file that it replaces. */
 static bool publish(const film *f, const char *name) {
-    bool done = (!fsync(f->part) || errno == EINVAL) && !rename(f->making, name);
+    struct stat st;
+    bool done = (lstat(name, &st) || !S_ISREG(st.st_mode) || !fchmod(f->part, st.st_mode & 0777)) &&
+                (!fsync(f->part) || errno == EINVAL) && !rename(f->making, name);
     if (!done)
         cli_error("%s: cannot be written: %s", name, strerror(errno));
     return done;

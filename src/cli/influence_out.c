@@ -264,23 +264,15 @@ noc_status influence_print(influence_job *job) { return job->args->json ? print_
 bool influence_csv_alone(const influence_args *args) { return args->csv && !strcmp(args->csv, "-"); }
 
 noc_status influence_write_csv(influence_job *job) {
-    bool alone = influence_csv_alone(job->args);
-    FILE *out = alone ? stdout : fopen(job->args->csv, "w");
-    char shown[120];
-    noc_text_clean(shown, sizeof(shown), job->args->csv);
-    if (!out) {
-        cli_error("%s: cannot be written: %s", shown, strerror(errno));
-        return NOC_ERR_IO;
-    }
+    noc_status status = NOC_OK;
     char *text =
         noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum, job->classes, job->class_count);
-    if (text)
-        fputs(text, out);
-    bool bad = !text || ferror(out);
+    if (!text)
+        cli_no_memory();
+    if (influence_csv_alone(job->args))
+        fputs(text, stdout); /* which is looked at in the end */
+    else
+        status = noc_text_save(job->args->csv, text, strlen(text), job->log);
     free(text);
-    if (!alone && (fclose(out) || bad)) { /* standard output is looked at in the end */
-        cli_error("%s: not all of it could be written", shown);
-        return NOC_ERR_IO;
-    }
-    return NOC_OK;
+    return status;
 }

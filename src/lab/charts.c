@@ -66,11 +66,11 @@ noc_status lab_bars(const lab_session *lab, const char *name) {
         for (size_t i = 0; i < spec->config_count; i++)
             most = fmax(most, bar_of(lab, camera, i, &error) * 1e3 + (isfinite(error) ? 1e3 * error : 0));
     double step = most > 0 ? round_up(most / 8) : 1, end = most > 0 ? ceil(most / step) * step : 1;
-    lab_file file;
+    output file;
     noc_status status = lab_create_file(lab->folder, name, lab->log, &file);
     if (status)
         return status;
-    FILE *out = file.out;
+    FILE *out = file.file;
     svg_head(out, width, height);
     words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", "CPU time of a frame, ms");
     for (double v = 0; v <= end * 1.0001; v += step) {
@@ -104,7 +104,7 @@ noc_status lab_bars(const lab_session *lab, const char *name) {
         }
     }
     noc_fprintf(out, "</svg>\n");
-    return lab_finish_file(&file);
+    return output_close(&file, NOC_OK, lab->log);
 }
 
 /* Where all entries stand for values of the same option, an entry is one row of dots; else each configuration. */
@@ -232,11 +232,11 @@ noc_status lab_dots(const lab_session *lab, const char *name) {
         columns = count > columns ? count : columns;
         columns = column > columns ? column : columns;
     }
-    lab_file file;
+    output file;
     noc_status status = lab_create_file(lab->folder, name, lab->log, &file);
     if (status)
         return status;
-    FILE *out = file.out;
+    FILE *out = file.file;
     int width = left + columns * (PANEL_WIDTH + PANEL_GAP);
     int head = TOP + (shares_rows(spec) ? values_legend(NULL, spec, left, width, 0) : 1) * LINE;
     svg_head(out, width, head + lines * high);
@@ -258,5 +258,5 @@ noc_status lab_dots(const lab_session *lab, const char *name) {
             panel(out, lab, camera, points[p], from + p * (PANEL_WIDTH + PANEL_GAP), top);
     }
     noc_fprintf(out, "</svg>\n");
-    return lab_finish_file(&file);
+    return output_close(&file, NOC_OK, lab->log);
 }

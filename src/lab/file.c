@@ -58,41 +58,9 @@ noc_status lab_make_folder(const char *path, noc_log *log) {
     return NOC_OK;
 }
 
-static void release(lab_file *file) {
-    free(file->path);
-    free(file->temporary);
-    *file = (lab_file){ NULL };
-}
-
-noc_status lab_create_file(const char *folder, const char *name, noc_log *log, lab_file *file) {
-    *file = (lab_file){ .path = noc_format("%s/%s", folder, name),
-                        .temporary = noc_format("%s/.%s.new", folder, name),
-                        .log = log };
-    noc_status status = file->path && file->temporary ? NOC_OK : noc_no_memory(log, name);
-    if (!status) {
-        unlink(file->temporary); /* of a killed run: the folder is locked */
-        file->out = fopen(file->temporary, "wx");
-        status = file->out ? NOC_OK : lab_io_error(log, file->path);
-    }
-    if (status)
-        release(file);
+noc_status lab_create_file(const char *folder, const char *name, noc_log *log, output *file) {
+    char *path = noc_format("%s/%s", folder, name);
+    noc_status status = path ? output_open(file, path, log) : noc_no_memory(log, name);
+    free(path);
     return status;
-}
-
-noc_status lab_finish_file(lab_file *file) {
-    /* EINVAL: nothing to write through */
-    bool failed = ferror(file->out) || fflush(file->out) || (fsync(fileno(file->out)) && errno != EINVAL);
-    failed = fclose(file->out) || failed;
-    failed = failed || rename(file->temporary, file->path);
-    noc_status status = failed ? lab_io_error(file->log, file->path) : NOC_OK;
-    if (failed)
-        unlink(file->temporary);
-    release(file);
-    return status;
-}
-
-void lab_discard_file(lab_file *file) {
-    fclose(file->out);
-    unlink(file->temporary);
-    release(file);
 }

@@ -1,20 +1,11 @@
-/* lab: files that are written beside their place and renamed when they are whole. */
+/* lab: files of its folder. */
 #ifndef NOC_LAB_FILE_H
 #define NOC_LAB_FILE_H
 
-#include "base/base.h"
-
-typedef struct lab_file {
-    FILE *out;
-    char *path, *temporary; /* owned */
-    noc_log *log;
-} lab_file;
+#include "base/output.h"
 
 /* name: in the folder. */
-noc_status lab_create_file(const char *folder, const char *name, noc_log *log, lab_file *file);
-noc_status lab_finish_file(lab_file *file);
-void lab_discard_file(lab_file *file); /* instead of finishing: nothing is left */
-
+noc_status lab_create_file(const char *folder, const char *name, noc_log *log, output *file);
 FILE *lab_open_file(const char *path, noc_log *log);        /* a regular one, to read; NULL after reporting */
 noc_status lab_make_folder(const char *path, noc_log *log); /* and those above it */
 /* The whole text, as noc_fprintf writes a number: nan and inf, too. */

@@ -10,15 +10,13 @@ static char *beside(const char *reference) { return noc_format("%.*s.noise", (in
 /* A line of numbers and one of the device. They may be lost: where they cannot be written, the report does without. */
 void lab_keep_truth(const char *reference, const lab_truth *truth) {
     const noc_lab_noise *n = &truth->noise;
-    char *path = beside(reference), *temporary = path ? noc_format("%s.%ld", path, (long)getpid()) : NULL;
-    FILE *file = temporary ? fopen(temporary, "wx") : NULL;
-    bool kept = file && noc_fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n%s\n", n->relmse, n->relmse_clamped,
-                                    n->relmse_all, n->relmse_clamped_all, n->mean, n->mean_all, truth->device) > 0;
-    if (file)
-        kept = !fclose(file) && kept;
-    if (temporary && (!kept || rename(temporary, path)))
-        unlink(temporary);
-    free(temporary);
+    char *path = beside(reference);
+    output file;
+    if (path && !output_open(&file, path, NULL)) {
+        noc_fprintf(file.file, "%.9g %.9g %.9g %.9g %.9g %.9g\n%s\n", n->relmse, n->relmse_clamped, n->relmse_all,
+                    n->relmse_clamped_all, n->mean, n->mean_all, truth->device);
+        (void)output_close(&file, NOC_OK, NULL);
+    }
     free(path);
 }
 

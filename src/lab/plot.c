@@ -122,11 +122,11 @@ noc_status lab_plot(const lab_session *lab, size_t camera, int mode, bool over_t
     int width = LEFT + PLOT_WIDTH + 64 + (name_length(lab) + 2) * 7, bottom = TOP + plot;
     int height = TOP + (rows > plot ? rows : plot) + BOTTOM;
     ranges(lab, s, over_time, bottom, &x, &y);
-    lab_file file;
+    output file;
     noc_status status = lab_create_file(lab->folder, name, lab->log, &file);
     if (status)
         return status;
-    FILE *out = file.out;
+    FILE *out = file.file;
     char text[LAB_TEXT];
     svg_head(out, width, height);
     noc_fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"26\" font-size=\"15\" font-weight=\"bold\">",
@@ -158,5 +158,5 @@ noc_status lab_plot(const lab_session *lab, size_t camera, int mode, bool over_t
                     "font-size=\"11\">bands: \302\261 standard error of %d repetitions</text>\n",
                     LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
     fputs("</svg>\n", out);
-    return lab_finish_file(&file);
+    return output_close(&file, NOC_OK, lab->log);
 }

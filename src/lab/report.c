@@ -459,16 +459,13 @@ static noc_status print_charts(FILE *out, const lab_session *lab) {
 }
 
 noc_status lab_write_report(const lab_session *lab) {
-    lab_file file;
+    output file;
     noc_status status = lab_create_file(lab->folder, "report.md", lab->log, &file);
     if (status)
         return status;
-    print_setting(file.out, lab);
-    status = print_charts(file.out, lab);
+    print_setting(file.file, lab);
+    status = print_charts(file.file, lab);
     for (size_t camera = 0; !status && camera < lab->spec->camera_count; camera++)
-        status = print_view(file.out, lab, camera);
-    if (!status)
-        return lab_finish_file(&file);
-    lab_discard_file(&file);
-    return status;
+        status = print_view(file.file, lab, camera);
+    return output_close(&file, status, lab->log);
 }

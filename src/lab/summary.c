@@ -172,11 +172,11 @@ static void print_structures(FILE *out, const lab_session *lab) {
 
 noc_status lab_write_summary(const lab_session *lab) {
     const lab_spec *spec = lab->spec;
-    lab_file file;
+    output file;
     noc_status status = lab_create_file(lab->folder, "summary.md", lab->log, &file);
     if (status)
         return status;
-    FILE *out = file.out;
+    FILE *out = file.file;
     char figure[LAB_TEXT];
     fputs("# ", out);
     lab_text(out, spec->title);
@@ -204,5 +204,5 @@ noc_status lab_write_summary(const lab_session *lab) {
     if (plain)
         print_plain(out, lab);
     print_structures(out, lab);
-    return lab_finish_file(&file);
+    return output_close(&file, NOC_OK, lab->log);
 }

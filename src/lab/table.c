@@ -314,7 +314,7 @@ noc_status lab_tidy_table(lab_session *lab) {
     if (status || (!others && !lab->rows_broken && !lab->rows_twice))
         return status;
     char *path = noc_format("%s/results.csv", lab->folder), *old = path ? old_name(lab) : NULL;
-    lab_file file;
+    output file;
     status = !path ? noc_no_memory(lab->log, "results.csv")
              : old ? lab_create_file(lab->folder, "results.csv", lab->log, &file)
                    : NOC_ERR_MEMORY;
@@ -322,13 +322,10 @@ noc_status lab_tidy_table(lab_session *lab) {
         tell_rows(lab, others, "came from other settings", old);
         tell_rows(lab, lab->rows_broken, "could not be read", old);
         tell_rows(lab, lab->rows_twice, "stood there twice", old);
-        print_all(lab, file.out);
+        print_all(lab, file.file);
         /* what could not be written, finishing tells */
-        status = fflush(file.out) ? NOC_OK : put_aside(lab, path, old, true);
-        if (status)
-            lab_discard_file(&file);
-        else
-            status = lab_finish_file(&file);
+        status = fflush(file.file) ? NOC_OK : put_aside(lab, path, old, true);
+        status = output_close(&file, status, lab->log);
         status = status ? status : turn_to(lab, path);
     }
     free(path);

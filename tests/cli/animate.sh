@@ -87,8 +87,10 @@ result $? "of all pictures"
 before=$(cksum <"there/$name")
 film -o "there/$name"
 grep -q 'was there' out && test "$(cksum <"there/$name")" = "$before"; result $? "it is not made twice"
+chmod 600 "there/$name"
 film --seed 3 -o "there/$name"
-test "$(cksum <"there/$name")" != "$before"; result $? "but anew with other options"
+test "$(cksum <"there/$name")" != "$before" && test "$(stat -c %a "there/$name")" = 600
+result $? "but anew with other options, and keeps its mode"
 film -o there/x-%02d.png
 test -e there/x.mp4 && test "$(numbers there 'x-*.png')" = 3; result $? "a film beside pictures"
 film --no-mp4 -o there/y-%02d.png

@@ -3,8 +3,11 @@
 . "$(dirname "$0")/lib.sh"
 tables='floor passes candidates lights windows triangles resolution threads isa memory'
 
-run bench --quick -q -o all.json
+: >all.json && chmod 600 all.json && ln -s all.json link.json
+run bench --quick -q -o link.json
 test $status = 0 && test ! -s err; result $? "a quick run of everything"
+test -L link.json && test "$(stat -c %a all.json)" = 600
+result $? "into a file that keeps its mode, behind a link" "$(stat -c '%n %a' ./*.json)"
 why=
 for name in $tables; do grep -Eq "^$name(:|\$)" out || why="$why $name"; done
 [ -z "$why" ]; result $? "has every table" "$why"

@@ -13,7 +13,9 @@ cat >map.osm <<'OSM'
 OSM
 ask() { run influence map.osm --map-surfaces -q --sky 0 "$@"; }
 
+: >well.csv && chmod 600 well.csv
 ask --region "street:Well Lane" --csv well.csv
+test "$(stat -c %a well.csv)" = 600; result $? "a CSV keeps the mode of what it replaces" "$(stat -c %a well.csv)"
 grep -q 'node/12, mapped\|node/12, Well Lane, map.osm' out && grep -q '^street:Well Lane: around' out &&
     grep -Eq '^ +[0-9.]+ ±[0-9.]+ +[0-9]+  road$' out && tail -n 1 well.csv | grep -q '^,"road","class",' &&
     [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 7 ]
