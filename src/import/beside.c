@@ -51,3 +51,21 @@ FILE *import_open_named(const char *folder, const char *name, bool anywhere, siz
         close(fd);
     return f;
 }
+
+void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most, size_t *size,
+                        const char **why) {
+    FILE *f = import_open_named(folder, name, anywhere, size, why);
+    void *data = NULL;
+    if (f && *size > most) /* IMPORT_NAMED, for there is no other limit */
+        *why = "is larger than 256 MB";
+    else if (f)
+        data = noc_alloc_large(*size + IMPORT_TAIL, 1);
+    if (data && fread(data, 1, *size, f) != *size) {
+        *why = ferror(f) ? strerror(errno) : "it got shorter while it was read";
+        free(data);
+        data = NULL;
+    }
+    if (f)
+        fclose(f);
+    return data;
+}

@@ -69,6 +69,12 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
 /* Opens one for reading and tells its size. NULL with *why where there is trouble, and with a *why of NULL where memory
  * is refused. Never waits for a pipe. */
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
+/* All of it, with IMPORT_TAIL zeros behind; free() it. NULL as there, and where it has more bytes than most
+ * (IMPORT_NAMED, or SIZE_MAX) or not all of it can be read. */
+#define IMPORT_NAMED ((size_t)256 << 20)
+#define IMPORT_TAIL 32
+void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most, size_t *size,
+                        const char **why);
 
 /* An image that a material of a mesh looks like. */
 typedef struct mesh_image {

@@ -33,9 +33,9 @@ static void test_bad(void **state) {
           "without data" },
         { ASSET "\"buffers\": [{\"uri\": \"data:;base64,AAAA\"}]}", "does not say its byteLength" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"none.bin\"}]}",
-          "none.bin\" cannot be opened: No such file" },
+          "none.bin\" cannot be read: No such file" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \".\"}]}", "not a regular file" },
-        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"\"}]}", "\" cannot be opened" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"\"}]}", "\" cannot be read" },
         { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], "
                 "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
           "mode" },

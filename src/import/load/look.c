@@ -9,7 +9,6 @@
 #include <math.h>
 
 #define MOST_LOOKS 1000000       /* of a file */
-#define MOST_BYTES (256u << 20)  /* of an image's file */
 #define KEPT_BYTES (256u << 20)  /* of all files that are kept until their pixels are read; others are read twice */
 #define PIXELS_AT_ONCE 100000000 /* of images that are read at the same time, but for the last of them */
 
@@ -202,7 +201,6 @@ static noc_status read_bytes(const importer *im, const scene_image *image, uint8
     const char *from = im->inputs[image->input].path, *name = image->path;
     size_t length = folder_length(from);
     char *folder = noc_strndup(from, length);
-    FILE *f = NULL;
     *read = NULL;
     *why = NULL;
     *data = image->data;
@@ -214,22 +212,9 @@ static noc_status read_bytes(const importer *im, const scene_image *image, uint8
     if (!strncmp(name, from, length))
         name += length;
     if (folder)
-        f = import_open_named(folder, name, im->params->allow_outside, size, why);
+        *data = *read = import_read_named(folder, name, im->params->allow_outside, IMPORT_NAMED, size, why);
     free(folder);
-    noc_status status = f ? NOC_OK : *why ? NOC_ERR_FORMAT : NOC_ERR_MEMORY;
-    if (f && *size > MOST_BYTES) {
-        *why = "image of more than 256 MB";
-        status = NOC_ERR_FORMAT;
-    }
-    if (!status && !(*data = *read = noc_alloc(*size + 1)))
-        status = NOC_ERR_MEMORY;
-    if (!status && fread(*read, 1, *size, f) != *size) {
-        *why = "image that cannot be read";
-        status = NOC_ERR_FORMAT;
-    }
-    if (f)
-        fclose(f);
-    return status;
+    return *read ? NOC_OK : *why ? NOC_ERR_FORMAT : NOC_ERR_MEMORY;
 }
 
 /* One image of several that are read at once. */

@@ -261,17 +261,17 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     static const char *const osm_options[] = { "CONFIG_FILE=" OSM_CONFIG_PATH, "COMPRESS_NODES=YES", NULL };
     static const char *const immutable[] = { "IMMUTABLE=YES", NULL }, *const none[] = { NULL };
     *m = (map_source){ .name = noc_stream_name(stream), .format = format->name, .log = log };
-    bool plain, copied = false;
+    bool copied = false;
     char *path = NULL;
     const char *why_not = gdal_load();
     if (why_not)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: %s needs GDAL, which cannot be loaded: %s", m->name, m->format,
                          why_not);
     gdal_enter(m);
-    noc_status status = gdal_path(stream, log, &path, &plain);
-    if (!status && plain && format->kind == MAP_SHAPEFILE)
+    noc_status status = gdal_path(stream, log, &path, &m->plain);
+    if (!status && m->plain && format->kind == MAP_SHAPEFILE)
         status = map_check_shapefile(m->name, anywhere, log);
-    if (!status && plain && format->kind == MAP_GEOPACKAGE) {
+    if (!status && m->plain && format->kind == MAP_GEOPACKAGE) {
         status = map_copy_geopackage(m->name, anywhere, noc_stream_budget(stream), log, &m->copy);
         copied = m->copy.path != NULL;
     }
@@ -308,6 +308,16 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
                  "unless --crs says otherwise",
                  m->name, m->link);
     free(path);
+    return status;
+}
+
+noc_status map_source_check(const map_source *m, noc_stream *stream) {
+    enum { PIECE = 1 << 16 };
+    char *piece = m->plain ? noc_alloc(PIECE) : NULL;
+    noc_status status = !m->plain ? NOC_OK : piece ? noc_stream_rewind(stream) : noc_no_memory(m->log, m->name);
+    for (size_t got = 1; !status && m->plain && got;)
+        status = noc_stream_read(stream, piece, PIECE, &got);
+    free(piece);
     return status;
 }
 

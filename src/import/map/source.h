@@ -20,6 +20,7 @@ typedef struct map_source {
     char error[512]; /* GDAL's first failure since it was opened, "" if none */
     char link[200];  /* the first address that a content asked for, "" if none: it is not fetched */
     bool entered;    /* GDAL is there, and this thread's settings of it are ours */
+    bool plain;      /* GDAL reads the file itself, neither unpacked nor from an archive */
     bool crs_named;  /* false: a GeoJSON without one, whose CRS is its format's */
     const char *name, *format;
     noc_log *log;
@@ -32,6 +33,8 @@ typedef struct map_source {
  * name files. To be closed after an error, too. */
 noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log);
 noc_status map_source_error(const map_source *m); /* reports m->error */
+/* After GDAL has read it: can all of a plain file be read? GDAL takes one that cannot be read on for one that ends. */
+noc_status map_source_check(const map_source *m, noc_stream *stream);
 void map_source_close(map_source *m);
 
 #endif

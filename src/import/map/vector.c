@@ -411,6 +411,7 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
                   "crs");
     if (!status)
         status = read_layers(&m);
+    status = status ? status : map_source_check(&m.source, stream);
     map_source_close(&m.source);
     tag_buffer_free(&m.tags);
     array_free(&m.rings);

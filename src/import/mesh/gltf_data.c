@@ -105,22 +105,16 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
     if (!name)
         return noc_no_memory(g->log, g->name);
     gltf_decode_percent(name);
-    FILE *f = import_open_named(g->folder, name, g->anywhere, &size, &why);
     noc_status status = NOC_OK;
-    if (!f && !why) {
-        status = noc_no_memory(g->log, g->name);
-    } else if (!f) {
-        status =
-            noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
-    } else if (!(b->owned = noc_alloc_large(size, 1))) {
-        status = noc_no_memory(g->log, g->name);
+    b->data = b->owned = import_read_named(g->folder, name, g->anywhere, SIZE_MAX, &size, &why);
+    if (b->owned) {
+        b->size = size;
+        g->budget->stored += (double)size;
     } else {
-        b->size = fread(b->owned, 1, size, f);
-        g->budget->stored += (double)b->size;
-        b->data = b->owned;
+        status = why ? noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be read: %s", g->name,
+                                 name, why)
+                     : noc_no_memory(g->log, g->name);
     }
-    if (f)
-        fclose(f);
     free(name);
     return status;
 }

@@ -84,7 +84,6 @@ typedef struct library {
     char *data;      /* the OBJ's */
     size_t size;
     NOC_ARRAY(char) asked; /* what Assimp reads in its place */
-    char *missing;         /* first library that could not be opened, and why */
     bool refused;          /* memory was, to what Assimp would have read */
     obj_images images;
     geo_issues *issues;
@@ -129,11 +128,6 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         o.data = obj_open_library(&lib->folder, relative, &o.size, NULL, lib->issues);
         o.owned = true;
         lib->refused = lib->refused || lib->folder.refused;
-        if (!o.data && !lib->missing && !lib->refused) {
-            lib->missing = noc_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
-                                      lib->folder.why);
-            lib->refused = !lib->missing;
-        }
         if (!o.data)
             return NULL;
     }
@@ -293,8 +287,8 @@ static noc_status read_obj(const char *path, library *lib, const obj_text *text,
         const char *why = aiGetErrorString();
         status = noc_error(to->parts->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
-        if (lib->missing) {
-            noc_warn(to->parts->log, "%s: default material, because %s", path, lib->missing);
+        if (lib->folder.missing) {
+            noc_warn(to->parts->log, "%s: default material, because %s", path, lib->folder.missing);
             geo_issue(lib->issues, GEO_GUESSED, "library of materials that cannot be read, default material", "mtllib");
         }
         status = add_meshes(from, text, to);
@@ -367,7 +361,7 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     array_free(&lib.asked);
     free(folder);
     free(lib.main_name);
-    free(lib.missing);
+    free(lib.folder.missing);
     return status;
 }
 

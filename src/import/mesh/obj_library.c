@@ -3,24 +3,14 @@
 
 #include <math.h>
 
-#define MOST_BYTES ((size_t)256 << 20)
 #define LEAST_BYTES 16 /* of a shorter one, Assimp forgets the stream */
+_Static_assert(LEAST_BYTES < IMPORT_TAIL, "a short one is made longer where it lies");
 
 static char *load(obj_folder *folder, const char *name, size_t *size) {
-    size_t stored;
-    FILE *f = import_open_named(folder->path, name, folder->anywhere, &stored, &folder->why);
-    if (f && stored > MOST_BYTES)
-        folder->why = "is larger than 256 MB";
-    char *data = f && stored <= MOST_BYTES ? noc_alloc_large(stored + LEAST_BYTES + 1, 1) : NULL;
+    char *data = import_read_named(folder->path, name, folder->anywhere, IMPORT_NAMED, size, &folder->why);
     folder->refused = folder->refused || (!data && !folder->why);
-    if (data) {
-        *size = fread(data, 1, stored, f);
-        while (*size < LEAST_BYTES)
-            data[(*size)++] = '\n';
-        data[*size] = 0;
-    }
-    if (f)
-        fclose(f);
+    while (data && *size < LEAST_BYTES)
+        data[(*size)++] = '\n';
     return data;
 }
 
@@ -222,6 +212,10 @@ char *obj_open_library(obj_folder *folder, const char *name, size_t *size, obj_i
         folder->refused = true;
         free(data);
         data = NULL;
+    }
+    if (!data && !folder->refused && !folder->missing) {
+        folder->missing = noc_format("%s%s cannot be read: %s", *begin == '/' ? "" : folder->path, begin, folder->why);
+        folder->refused = !folder->missing;
     }
     free(trimmed);
     return data;

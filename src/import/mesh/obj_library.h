@@ -21,6 +21,7 @@ typedef struct obj_folder {
     const char *path; /* with a slash at its end, or "" */
     bool anywhere;    /* they may lie outside it */
     const char *why;  /* the last one could not be opened */
+    char *missing;    /* the first one that could not be read, and why; free() it */
     bool refused;     /* memory was, to one of them, which then is not there; stays set */
     bool textures;    /* are wanted: those that are not read are counted */
 } obj_folder;
