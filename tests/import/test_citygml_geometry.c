@@ -125,6 +125,25 @@ static void test_bad_rings(void **state) {
     assert_string_equal(examples, "bad");
 }
 
+/* GML 3.3's compact ones have a ring that closes by itself: nothing of it is repaired. */
+static void test_compact(void **state) {
+    (void)state;
+    /* clang-format off */
+#define COMPACT(name, id, places)                                                                                      \
+    "<g:surfaceMember><ce:" name " xmlns:ce='http://www.opengis.net/gml/3.3/ce' g:id='" id "'><g:posList " \
+    "srsDimension='3'>" places "</g:posList></ce:" name "></g:surfaceMember>"
+    const char *text = SURFACES(COMPACT("SimplePolygon", "p", "0 0 0 9 0 0 9 9 0 5 12 0 0 9 0")
+        COMPACT("SimpleRectangle", "r", "0 0 1 9 0 1 9 9 1 0 9 1") COMPACT("SimpleTriangle", "t", "0 0 2 9 0 2 9 9 2"));
+    /* clang-format on */
+    assert_int_equal(read_surfaces(text), 3);
+    assert_int_equal(city_find(&sink, "p")->points, 5);
+    assert_int_equal(city_find(&sink, "r")->points, 4);
+    assert_int_equal(city_find(&sink, "t")->points, 3);
+    assert_int_equal(geo_issues_count(sink.sink.issues), 0);
+    assert_int_equal(read_surfaces(SURFACES(COMPACT("SimplePolygon", "p", "0 0 0 9 0 0"))), 0);
+    assert_int_equal(city_issue(&sink, "ring with too few points"), 1);
+}
+
 static void test_holes(void **state) {
     (void)state;
     /* clang-format off */
@@ -315,6 +334,7 @@ int main(void) {
         T(test_numbers_exact),
         T(test_bad_rings),
         T(test_holes),
+        T(test_compact),
         T(test_containers),
         T(test_rings_of_curves),
         T(test_orientation),

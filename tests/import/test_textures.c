@@ -56,6 +56,33 @@ static void test_citygml(void **state) {
     noc_scene_destroy(s);
 }
 
+#define TEXTURED(target, ring)                                                                                         \
+    "<app:surfaceDataMember><app:ParameterizedTexture><app:imageURI>one.png</app:imageURI><app:target uri='" target    \
+    "'><app:TexCoordList><app:textureCoordinates" ring ">" SQUARE "</app:textureCoordinates></app:TexCoordList>"       \
+    "</app:target></app:ParameterizedTexture></app:surfaceDataMember>"
+
+/* Targets as exporters write them: ids without their #, rings in place of polygons, no name of the ring. */
+static void test_targets(void **state) {
+    (void)state;
+    write_image("one.png");
+    write_file("city.gml",
+               HEAD TEXTURED("p1", " ring='p1r'") TEXTURED("#p2", "") TEXTURED("p3r", "")
+                   TEXTURED("other.gml#p4",
+                            "") "<app:surfaceDataMember><app:X3DMaterial><app:diffuseColor>1 0 0</app:diffuseColor>"
+                                "<app:target> p4r </app:target></app:X3DMaterial></app:surfaceDataMember>" TAIL);
+    noc_report *report;
+    noc_scene *s = load("city.gml", true, &report);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(wall_material(s, i)->texture, 1);
+        expect_upright(s, i);
+    }
+    const noc_material *m = wall_material(s, 3);
+    assert_true(m->texture == 0 && m->albedo[0] > 0.8f && m->albedo[1] < 0.1f);
+    assert_int_equal(told(report, "appearance of what is in another file"), 1);
+    noc_report_destroy(report);
+    noc_scene_destroy(s);
+}
+
 static void test_broken(void **state) {
     (void)state;
     write_file("broken.jpg", "\xff\xd8\xff\xe0 and no more");
@@ -181,8 +208,8 @@ static void test_halved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_citygml), cmocka_unit_test(test_broken),         cmocka_unit_test(test_halved),
-        cmocka_unit_test(test_alike),   cmocka_unit_test(test_many_materials),
+        cmocka_unit_test(test_citygml), cmocka_unit_test(test_targets), cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_halved),  cmocka_unit_test(test_alike),   cmocka_unit_test(test_many_materials),
     };
     return run_looks(tests, NOC_COUNT(tests));
 }

@@ -53,9 +53,12 @@ typedef enum cg_code {
     CG_COORDINATES,
 } cg_code;
 
+/* GML 3.3's compact ones: the coordinates of their only ring stand in the polygon, which closes by itself. */
+enum { CG_SIMPLE = 1 };
+
 typedef struct cg_name {
     uint8_t code;
-    uint8_t value;
+    uint8_t value;   /* of CG_POLYGON: is it CG_SIMPLE? */
     uint8_t version; /* major CityGML version of the namespace, 0 where it is not CityGML's */
 } cg_name;
 
@@ -263,6 +266,7 @@ typedef struct cg_looks {
     NOC_ARRAY(uint32_t) lists; /* rings of the list of coordinates at hand */
     size_t named;              /* of them, by elements that follow */
     char *reference;           /* an attribute that says what is meant, or NULL */
+    char *target;              /* of the texture coordinates that are read */
 } cg_looks;
 
 /* ---- the parser ---- */
@@ -435,7 +439,7 @@ bool cg_emit_lamp(cg_parser *p);
 void cg_emit_installed_lamps(cg_parser *p);
 
 /* ring.c: rings and polygons from coordinates. */
-void cg_polygon_begin(cg_parser *p, const char *id);
+void cg_polygon_begin(cg_parser *p, const char *id, bool simple);
 void cg_polygon_end(cg_parser *p, const cg_frame *frame);
 void cg_ring_begin(cg_parser *p, bool exterior, const char *id);
 void cg_ring_end(cg_parser *p, const cg_frame *frame);

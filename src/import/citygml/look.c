@@ -96,13 +96,18 @@ static const char *gml_id(const XML_Char **list) {
     return NULL;
 }
 
-/* An id without what is around it; NULL where it leads out of the file. */
-static char *trim_reference(char *text) {
+/* An id without what is around it, "#id" or the id itself; NULL, and counted, where it leads out of the file. */
+static char *trim_reference(cg_parser *p, char *text) {
     char *end = text + strlen(text);
     while (end > text && strchr(" \t\r\n", end[-1]))
         *--end = 0;
     text += strspn(text, " \t\r\n");
-    return text[0] == '#' && text[1] ? text + 1 : NULL;
+    text += *text == '#';
+    if (*text && !strpbrk(text, "#/:"))
+        return text;
+    if (*text)
+        geo_issue(p->sink->issues, GEO_GUESSED, "appearance of what is in another file", text);
+    return NULL;
 }
 
 static void on_start(void *user, const XML_Char *name, const XML_Char **list) {
@@ -132,9 +137,10 @@ static void on_start(void *user, const XML_Char *name, const XML_Char **list) {
         k->lists.len = 0;
     } else if (is == WORD_COORDINATES || is == WORD_TARGET) {
         const char *id = attribute(list, is == WORD_TARGET ? "uri" : "ring");
-        free(k->reference);
-        k->reference = noc_strdup(id);
-        if (id && !k->reference)
+        char **to = is == WORD_TARGET ? &k->target : &k->reference;
+        free(*to);
+        *to = noc_strdup(id);
+        if (id && !*to)
             cg_no_memory(p);
     }
 }
@@ -173,7 +179,7 @@ static void add_list(cg_parser *p, const char *text) {
 
 static void name_ring(cg_parser *p, size_t list, char *reference) {
     cg_looks *k = &p->looks;
-    const char *id = reference ? trim_reference(reference) : NULL;
+    const char *id = reference ? trim_reference(p, reference) : NULL;
     uint64_t have;
     if (!id || list >= k->lists.len || !k->front || map_get(&k->by_ring, id, &have))
         return;
@@ -183,7 +189,7 @@ static void name_ring(cg_parser *p, size_t list, char *reference) {
 
 static void name_target(cg_parser *p, char *reference) {
     cg_looks *k = &p->looks;
-    const char *id = reference ? trim_reference(reference) : NULL;
+    const char *id = reference ? trim_reference(p, reference) : NULL;
     uint64_t have;
     if (!id || !k->front || map_get(&k->by_target, id, &have))
         return;
@@ -240,12 +246,13 @@ static void on_end(void *user, const XML_Char *name) {
     case WORD_TRANSPARENCY: look->transparency = numbers_of(text, &number, 1) ? number : 0; break;
     case WORD_TARGET:
         if (look->material)
-            name_target(p, k->reference ? k->reference : text);
+            name_target(p, k->target ? k->target : text);
         break;
     case WORD_COORDINATES:
         add_list(p, text);
-        if (k->reference)
-            name_ring(p, k->lists.len - 1, k->reference);
+        /* without a ring's name the first one is that of the target, a polygon or ring; 3.0 names them later */
+        if (k->reference || k->lists.len == 1)
+            name_ring(p, k->lists.len - 1, k->reference ? k->reference : k->target);
         break;
     case WORD_RING: /* 3.0: after all lists, in their order */ name_ring(p, k->named++, text); break;
     case WORD_LIST: k->named = 0; break;
@@ -285,15 +292,20 @@ void cg_looks_free(cg_looks *k) {
     map_free(&k->by_target);
     map_free(&k->pairs);
     free(k->reference);
+    free(k->target);
 }
 
 void cg_ring_look(cg_parser *p, const char *id, size_t points, const char *report_id) {
     cg_looks *k = &p->looks;
     uint64_t found = 0;
+    if (p->xml && *id && !p->polygon_material)
+        p->polygon_material = cg_material_of(p, id);
     if (p->polygon_unplaced || (p->xml && !k->rings.len))
         return;
     p->polygon_unplaced = true;
-    if (p->xml && (!*id || !map_get(&k->by_ring, id, &found)))
+    bool named = !p->xml || (*id && map_get(&k->by_ring, id, &found)) ||
+                 (p->ring_exterior && p->polygon_id && map_get(&k->by_ring, p->polygon_id, &found));
+    if (!named)
         return;
     const cg_ring_image *ring = p->xml ? &k->rings.data[found] : &k->given;
     if (!ring->look)

@@ -195,11 +195,19 @@ static cg_name city_name(const char *local) {
     return (cg_name){ .code = find_word(city_words, NOC_COUNT(city_words), local, CG_PLAIN) };
 }
 
+static cg_name gml_name(const char *local) {
+    static const char *const simple[] = { "SimplePolygon", "SimpleTriangle", "SimpleRectangle" };
+    for (size_t i = 0; i < NOC_COUNT(simple); i++)
+        if (!strcmp(local, simple[i]))
+            return (cg_name){ .code = CG_POLYGON, .value = CG_SIMPLE };
+    return (cg_name){ .code = find_word(gml_words, NOC_COUNT(gml_words), local, CG_FOREIGN) };
+}
+
 static cg_name classify(const char *name) {
     const char *local = cg_local_name(name);
     if (starts_with(name, "http://www.opengis.net/gml\n") || starts_with(name, "http://www.opengis.net/gml/") ||
         starts_with(name, "http://www.opengis.net/wfs\n") || starts_with(name, "http://www.opengis.net/wfs/"))
-        return (cg_name){ .code = find_word(gml_words, NOC_COUNT(gml_words), local, CG_FOREIGN) };
+        return gml_name(local);
     if (!starts_with(name, "http://www.opengis.net/citygml/"))
         return (cg_name){ .code = CG_FOREIGN };
     cg_name result = city_name(local);

@@ -312,7 +312,7 @@ static bool start_polygon(cg_parser *p, cg_frame *frame, const attributes *a) {
             cg_no_memory(p);
         id = p->terrain_id.data;
     }
-    cg_polygon_begin(p, id);
+    cg_polygon_begin(p, id, frame->name.value == CG_SIMPLE);
     return true;
 }
 

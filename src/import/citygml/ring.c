@@ -15,7 +15,7 @@ const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t fe
     return f ? f->type->name : "";
 }
 
-void cg_polygon_begin(cg_parser *p, const char *id) {
+void cg_polygon_begin(cg_parser *p, const char *id, bool simple) {
     p->in_polygon = true;
     p->has_exterior = p->polygon_counted = false;
     p->polygon_id = id;
@@ -24,6 +24,8 @@ void cg_polygon_begin(cg_parser *p, const char *id) {
     p->ring_uv.len = 0;
     p->polygon_texture = p->polygon_material = 0;
     p->polygon_unplaced = false;
+    if (simple)
+        cg_ring_begin(p, true, id);
 }
 
 void cg_ring_begin(cg_parser *p, bool exterior, const char *id) {
@@ -97,7 +99,7 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         p->xyz.len = p->ring_first;
         return;
     }
-    if (!closed)
+    if (!closed && frame->name.value != CG_SIMPLE)
         cg_issue(p, GEO_REPAIRED, "ring not closed", id);
     if (p->ring_curved)
         cg_issue(p, GEO_GUESSED, "arc taken as straight lines", id);
@@ -121,6 +123,8 @@ static void *arena_copy(noc_arena *arena, const void *data, size_t size) {
 }
 
 void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
+    if (frame->name.value == CG_SIMPLE)
+        cg_ring_end(p, frame);
     p->in_polygon = false;
     if (!p->has_exterior) {
         if (!p->polygon_counted)

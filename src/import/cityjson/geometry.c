@@ -140,7 +140,7 @@ static void read_surface(builder *b, const json_t *rings, const json_t *value) {
     if (!choose_geometry(b, semantics))
         return;
     const json_t *texture = cj_texture_at(&b->themes, b->path, b->depth);
-    cg_polygon_begin(p, NULL);
+    cg_polygon_begin(p, NULL, false);
     p->polygon_material = cj_material_at(&b->themes, b->path, b->depth);
     for (size_t i = 0; i < json_array_size(rings) && !p->status; i++)
         read_ring(b, json_array_get(rings, i), json_array_get(texture, i), i == 0);
