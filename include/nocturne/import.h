@@ -1,7 +1,7 @@
 /* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML and CityJSON
  * (plain, .gz, .zip); OBJ, PLY, glTF and GLB; terrain as GeoTIFF; OpenStreetMap XML and PBF, Overpass JSON, GeoJSON,
- * GeoJSONSeq, GeoPackage, Shapefile (also zipped), FlatGeobuf, CSV; tracks of cars as GPX. Several inputs make one
- * scene. */
+ * GeoJSONSeq, GeoPackage, Shapefile (also zipped), FlatGeobuf, GML, ArcGIS JSON, CSV; tracks of cars as GPX. Several
+ * inputs make one scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 

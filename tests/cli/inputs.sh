@@ -91,7 +91,7 @@ with zipfile.ZipFile("stranger", "w") as z:
 END
 refused XLSX 'XLSX.*CSV'
 printf 'ACME\n1\n2\n36\nten\n' >stranger
-expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' \
+expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, ArcGIS JSON, GML, GeoPackage' \
     render stranger -o x.png
 
 # Ids are whole, for a part of one cannot be searched for; and causes of lamps come first.

@@ -327,6 +327,77 @@ static void test_other_maps(void **state) {
 #endif
 }
 
+/* ---- answers of servers ---- */
+
+#if NOC_HAVE_GDAL
+
+/* %s: of the collection, and the place */
+#define WFS                                                                                                            \
+    "<?xml version=\"1.0\"?><wfs:FeatureCollection xmlns:wfs=\"http://www.opengis.net/wfs/2.0\" "                      \
+    "xmlns:gml=\"http://www.opengis.net/gml/3.2\" xmlns:g=\"http://example.invalid/g\" %s><wfs:member>"                \
+    "<g:Street_light gml:id=\"s.1\"><g:lamp_type>LED</g:lamp_type><g:lamp_wattage>60</g:lamp_wattage><g:height>8"      \
+    "</g:height><g:geom><gml:Point %s</gml:Point></g:geom></g:Street_light></wfs:member></wfs:FeatureCollection>"
+#define ARCGIS                                                                                                         \
+    "{\"geometryType\": \"esriGeometryPoint\", \"spatialReference\": {%s}, \"fields\": [{\"name\": \"lamp_type\", "    \
+    "\"type\": \"esriFieldTypeString\"}, {\"name\": \"lamp_wattage\", \"type\": \"esriFieldTypeDouble\"}], "           \
+    "\"features\": [{\"attributes\": {\"lamp_type\": \"LED\", \"lamp_wattage\": 60}, \"geometry\": %s}]%s}"
+
+/* One lamp of 60 W is read there, and the last warning says so; where format is NULL, the error does. */
+static void expect_answer(const char *text, const char *format, const char *crs, double x, double y, const char *said) {
+    lamp_sink s;
+    lamp_sink_start(&s);
+    noc_status status = read_lamps(&s, temp_file(text, strlen(text)), NULL);
+    if (status != (format ? NOC_OK : NOC_ERR_FORMAT) || !strstr(format ? s.warning : s.error, said))
+        fail_msg("%s %s for %s", s.error, s.warning, said);
+    if (format) {
+        assert_string_equal(s.format, format);
+        assert_string_equal(s.crs, crs);
+        assert_false(s.crs_taken);
+        assert_int_equal(s.lamps.len, 1);
+        assert_float_equal(s.lamps.data[0].watts, 60, 0);
+        assert_float_equal(s.lamps.data[0].xyz[0], x, 1e-6);
+        assert_float_equal(s.lamps.data[0].xyz[1], y, 1e-6);
+        assert_int_equal(s.warnings, *said != 0);
+    }
+    lamp_sink_end(&s);
+}
+
+/* URLs and URNs of a CRS have its own order of axes, which for these is the northing or latitude first. */
+static void test_wfs(void **state) {
+    char text[2000];
+#define URL "srsName=\"http://www.opengis.net/def/crs/EPSG/0/3879\"><gml:pos>6673000 25496000</gml:pos>"
+    snprintf(text, sizeof(text), WFS, "", URL);
+    expect_answer(text, "GML", "EPSG:3879", 25496000, 6673000, "");
+    snprintf(text, sizeof(text), WFS, "", "srsName=\"urn:ogc:def:crs:EPSG::4326\"><gml:pos>60.2 24.9</gml:pos>");
+    expect_answer(text, "GML", "EPSG:4326", 24.9, 60.2, "");
+    snprintf(text, sizeof(text), WFS, "", "srsName=\"EPSG:25832\"><gml:pos>690000 5330000</gml:pos>");
+    expect_answer(text, "GML", "EPSG:25832", 690000, 5330000, "");
+    snprintf(text, sizeof(text), WFS, "numberMatched=\"5000\" numberReturned=\"1\"", URL);
+    expect_answer(text, "GML", "EPSG:3879", 25496000, 6673000, "the server had 5000 features and gave 1");
+    snprintf(text, sizeof(text), WFS, "xsi:schemaLocation=\"http://example.invalid/g /dev/zero\"", URL);
+    expect_answer(text, "GML", "EPSG:3879", 25496000, 6673000, "");
+    snprintf(text, sizeof(text), WFS, "", "srsName=\"/dev/zero\"><gml:pos>1 2</gml:pos>");
+    expect_answer(text, NULL, NULL, 0, 0, "\"/dev/zero\" is no name of a CRS");
+    snprintf(text, sizeof(text), "<!DOCTYPE a [<!ENTITY b \"c\">]>" WFS, "", URL);
+    expect_answer(text, NULL, NULL, 0, 0, "document type");
+}
+
+static void test_arcgis(void **state) {
+    char text[1000];
+    snprintf(text, sizeof(text), ARCGIS, "\"wkid\": 2263", "{\"x\": 1000000, \"y\": 200000}", "");
+    expect_answer(text, "ArcGIS JSON", "EPSG:2263", 1000000, 200000, "");
+    snprintf(text, sizeof(text), ARCGIS, "\"wkid\": 102100, \"latestWkid\": 3857", "{\"x\": 1000, \"y\": 2000}",
+             ", \"exceededTransferLimit\": false");
+    expect_answer(text, "ArcGIS JSON", "EPSG:3857", 1000, 2000, "");
+    snprintf(text, sizeof(text), ARCGIS, "\"wkid\": 4326", "{\"x\": -75, \"y\": 40}",
+             ", \"exceededTransferLimit\": true");
+    expect_answer(text, "ArcGIS JSON", "EPSG:4326", -75, 40, "a part of its features (exceededTransferLimit)");
+    snprintf(text, sizeof(text), ARCGIS, "\"wkt\": \"+proj=merc +nadgrids=/dev/zero\"", "{\"x\": -75, \"y\": 40}", "");
+    expect_answer(text, NULL, NULL, 0, 0, "may open files");
+}
+
+#endif
+
 /* ---- broken files ---- */
 
 static char *slurp(const char *path, size_t *size) {
@@ -453,10 +524,21 @@ static void test_unread_pbf(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_real_counts), cmocka_unit_test(test_washington), cmocka_unit_test(test_heights),
-        cmocka_unit_test(test_csv),         cmocka_unit_test(test_geojson),    cmocka_unit_test(test_osm),
-        cmocka_unit_test(test_other_maps),  cmocka_unit_test(test_cut),        cmocka_unit_test(test_mutated),
-        cmocka_unit_test(test_unread),      cmocka_unit_test(test_unread_pbf),
+        cmocka_unit_test(test_real_counts),
+        cmocka_unit_test(test_washington),
+        cmocka_unit_test(test_heights),
+        cmocka_unit_test(test_csv),
+        cmocka_unit_test(test_geojson),
+        cmocka_unit_test(test_osm),
+        cmocka_unit_test(test_other_maps),
+        cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_mutated),
+        cmocka_unit_test(test_unread),
+        cmocka_unit_test(test_unread_pbf),
+#if NOC_HAVE_GDAL
+        cmocka_unit_test(test_wfs),
+        cmocka_unit_test(test_arcgis),
+#endif
     };
     return cmocka_run_group_tests_name("import/vector", tests, NULL, tear_down);
 }

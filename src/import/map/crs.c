@@ -28,13 +28,20 @@ typedef struct json_scan {
     size_t depth, crs_depth; /* crs_depth: of the member that is being read, 0: none */
     bool in_string, escaped;
     bool named; /* the file's own member holds a string */
-    int hex;    /* digits of \u still to come */
+    bool cut, cut_key;
+    int hex; /* digits of \u still to come */
     unsigned code;
     size_t length; /* of the string so far, though only its begin is kept */
     char text[LONGEST];
 } json_scan;
 
-static bool is_crs_key(const char *text) { return noc_ieq(text, "crs") || noc_ieq(text, "coordRefSys"); }
+/* Those of GeoJSON, and of ArcGIS JSON. */
+static bool is_crs_key(const char *text) {
+    return noc_ieq(text, "crs") || noc_ieq(text, "coordRefSys") || noc_ieq(text, "wkt") || noc_ieq(text, "wkt2");
+}
+
+/* {"exceededTransferLimit": true}: the server has sent a part. Of keys only the begin is kept. */
+static bool is_cut_key(const char *text) { return !strcmp(text, "exceededTransfe"); }
 
 /* Elsewhere than in a CRS only keys matter, which are short. */
 static void keep(json_scan *s, char c) {
@@ -90,7 +97,9 @@ static noc_status between_strings(json_scan *s, char c) {
     case ':':
         if (!s->crs_depth && is_crs_key(s->text))
             s->crs_depth = s->depth;
+        s->cut_key = !s->crs_depth && is_cut_key(s->text);
         break;
+    case 't': s->cut = s->cut || s->cut_key; break;
     case '{':
     case '[':
         s->depth++;
@@ -118,7 +127,7 @@ static noc_status between_strings(json_scan *s, char c) {
     return NOC_OK;
 }
 
-static noc_status check_geojson(noc_stream *stream, bool *named, noc_log *log) {
+static noc_status check_json(noc_stream *stream, bool *named, bool *cut, noc_log *log) {
     enum { CHUNK = 1 << 16 };
     json_scan *s = noc_calloc(1, sizeof(*s));
     char *buffer = noc_alloc(CHUNK);
@@ -134,6 +143,7 @@ static noc_status check_geojson(noc_stream *stream, bool *named, noc_log *log) {
             status = s->in_string ? in_string(s, buffer[i]) : between_strings(s, buffer[i]);
     }
     *named = s && s->named;
+    *cut = s && s->cut;
     free(s);
     free(buffer);
     return status;
@@ -236,8 +246,15 @@ static noc_status check_shapefile(const char *path, const char *name, noc_log *l
 }
 
 noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, bool *named, noc_log *log) {
+    bool cut = false, arcgis;
     *named = true;
-    return format->kind == MAP_GEOJSON      ? check_geojson(stream, named, log)
+    noc_status status = format->kind == MAP_GEOJSON  ? check_json(stream, named, &cut, log)
+                        : format->kind == MAP_ARCGIS ? check_json(stream, &arcgis, &cut, log)
+                                                     : NOC_OK;
+    if (cut)
+        noc_warn(log, "%s: the server gave a part of its features (exceededTransferLimit): ask it for the others",
+                 noc_stream_name(stream));
+    return status                           ? status
            : format->kind == MAP_FLATGEOBUF ? check_flatgeobuf(stream, log)
            : format->kind == MAP_SHAPEFILE  ? check_shapefile(path, noc_stream_name(stream), log)
                                             : NOC_OK;

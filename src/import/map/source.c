@@ -260,6 +260,7 @@ noc_status map_source_error(const map_source *m) {
 noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log) {
     static const char *const osm_options[] = { "CONFIG_FILE=" OSM_CONFIG_PATH, "COMPRESS_NODES=YES", NULL };
     static const char *const immutable[] = { "IMMUTABLE=YES", NULL }, *const none[] = { NULL };
+    static const char *const gml_options[] = { "DOWNLOAD_SCHEMA=NO", "EXPOSE_GML_ID=YES", NULL };
     *m = (map_source){ .name = noc_stream_name(stream), .format = format->name, .log = log };
     bool copied = false;
     char *path = NULL;
@@ -280,10 +281,13 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
         path = noc_format("%s/" MAP_COPY_NAME, m->copy.path);
         status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
+    if (!status && format->kind == MAP_GML)
+        status = map_gml_open(m, stream, &path);
     if (!status)
         status = map_check_crs(stream, path, format, &m->crs_named, log);
     if (!status) {
         const char *const *options = format->kind == MAP_OSM                     ? osm_options
+                                     : format->kind == MAP_GML                   ? gml_options
                                      : format->kind == MAP_GEOPACKAGE && !copied ? immutable
                                                                                  : none;
         bool grid = format->kind == MAP_GEOTIFF;
@@ -324,6 +328,8 @@ noc_status map_source_check(const map_source *m, noc_stream *stream) {
 void map_source_close(map_source *m) {
     if (m->dataset)
         gdal.GDALClose(m->dataset);
+    map_gml_close(m);
+    free(m->content);
     if (m->entered)
         gdal_leave();
     scratch_remove(&m->copy);

@@ -10,7 +10,7 @@ typedef struct map_format {
     const char *name;
     const char *drivers[3]; /* GDAL's, ended by NULL */
     bool (*probe)(const char *head, size_t size);
-    enum { MAP_GEOJSON, MAP_FLATGEOBUF, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE, MAP_GEOTIFF } kind;
+    enum { MAP_GEOJSON, MAP_ARCGIS, MAP_FLATGEOBUF, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE, MAP_GML, MAP_GEOTIFF } kind;
 } map_format;
 
 #if NOC_HAVE_GDAL
@@ -25,6 +25,8 @@ typedef struct map_source {
     const char *name, *format;
     noc_log *log;
     scratch_folder copy; /* with our own copy of the file, where it is not read in place */
+    char *content;       /* of a GML, and what GDAL knows it by; "": nothing */
+    char memory[64];
 } map_source;
 
 /* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing
@@ -36,6 +38,10 @@ noc_status map_source_error(const map_source *m); /* reports m->error */
 /* After GDAL has read it: can all of a plain file be read? GDAL takes one that cannot be read on for one that ends. */
 noc_status map_source_check(const map_source *m, noc_stream *stream);
 void map_source_close(map_source *m);
+
+/* gml.c: the path by which GDAL finds the stream's content, in place of *path; checked, and reported. */
+noc_status map_gml_open(map_source *m, noc_stream *stream, char **path);
+void map_gml_close(map_source *m);
 
 #endif
 

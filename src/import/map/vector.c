@@ -1,5 +1,5 @@
-/* Lamps from maps: OpenStreetMap XML and PBF, GeoJSON, GeoPackage, Shapefile and FlatGeobuf through GDAL, and CSV
- * without it.
+/* Lamps from maps: OpenStreetMap XML and PBF, GeoJSON, ArcGIS JSON, GML, GeoPackage, Shapefile and FlatGeobuf through
+ * GDAL, and CSV without it.
  *
  * The format is known from the content, and only its driver may open the file, so no name and no content can make GDAL
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
@@ -8,6 +8,7 @@
 #include "import/map/osm_ways.h"
 #include "import/map/outlines.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -35,6 +36,16 @@ static bool probe_geojson(const char *head, size_t size) {
                                            (has(p, size, "\"coordinates\"") && has(p, size, "\"geometry\"")));
 }
 
+/* What ArcGIS servers answer to f=json. */
+static bool probe_arcgis(const char *head, size_t size) {
+    return size && (*head == '{' || isspace((unsigned char)*head)) && has(head, size, "\"features\"") &&
+           (has(head, size, "\"esriGeometry") || has(head, size, "\"esriFieldType"));
+}
+
+static bool probe_gml(const char *head, size_t size) {
+    return has(head, size, "FeatureCollection") && has(head, size, "http://www.opengis.net/gml");
+}
+
 static bool probe_gpkg(const char *head, size_t size) { return size >= 16 && !memcmp(head, "SQLite format 3", 16); }
 
 static bool probe_shp(const char *head, size_t size) {
@@ -47,6 +58,8 @@ static const map_format formats[] = {
     { "OpenStreetMap XML", { "OSM" }, probe_osm_xml, MAP_OSM },
     { "OpenStreetMap PBF", { "OSM" }, probe_pbf, MAP_OSM },
     { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, MAP_GEOJSON },
+    { "ArcGIS JSON", { "ESRIJSON" }, probe_arcgis, MAP_ARCGIS },
+    { "GML", { "GML" }, probe_gml, MAP_GML },
     { "GeoPackage", { "GPKG" }, probe_gpkg, MAP_GEOPACKAGE },
     { "Shapefile", { "ESRI Shapefile" }, probe_shp, MAP_SHAPEFILE },
     { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, MAP_FLATGEOBUF },
@@ -450,7 +463,7 @@ static bool foreign(const char *head, size_t size) { return NOC_HAVE_GDAL && fin
 
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
 const noc_reader noc_reader_vector = {
-    .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf, CSV",
+    .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, ArcGIS JSON, GML, GeoPackage, Shapefile, FlatGeobuf, CSV",
     .reads = NOC_READS_LAMPS,
     .probe = probe,
     .probe_named = lamp_csv_probe_table,
