@@ -351,6 +351,20 @@ typedef struct geo_triangles {
     bool no_memory;              /* a polygon was left out as memory was refused; stays set */
 } geo_triangles;
 
+/* A block: an outline, first the outer ring, whose z is of no use, from a height to another. */
+typedef struct geo_block {
+    size_t ring_count;
+    const size_t *ring_size;
+    const double *xyz;
+    double low, high;
+    double least; /* walls are longer than this */
+    int floor;    /* noc_class of what it is seen by from below; -1: it has none */
+} geo_block;
+/* Takes a polygon; false ends the block. */
+typedef bool (*geo_block_add)(void *ctx, noc_class cls, size_t rings, const size_t *sizes, const double *xyz);
+/* Hands on its walls, roof and floor, which face outwards. false: add did not take one, or memory was refused. */
+bool geo_block_make(const geo_block *b, geo_block_add add, void *ctx);
+
 /* Points in metres. Appends to out, whose polygons have uv either all or none; returns false if the polygon was
  * skipped. */
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);

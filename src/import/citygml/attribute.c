@@ -1,11 +1,14 @@
 /* attribute.c: what an object says of itself: its class, function, usage and name, and generic attributes,
  * which carry their names in XML in CityGML 1.0 and 2.0, and as elements in 3.0. */
 #include "import/citygml/citygml.h"
+#include "import/lamps/tags.h"
 #include "import/use.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define MOST_STOREYS 250
+#define MOST_METRES 1000
 
 #define MOST 256 /* attributes of an object, or of a part of it, that are kept */
 
@@ -54,16 +57,22 @@ bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name) {
     return true;
 }
 
-/* The unit of "urn:ogc:def:uom:UCUM::m", "#ft" and the like. */
+/* The unit of "urn:ogc:def:uom:UCUM::[ft_i]", "#ft" and the like; EPSG's feet are 9002 and 9003. */
 static const char *unit_of(const char *uom) {
     const char *unit = uom;
     for (const char *c = uom; *c; c++)
         if (strchr(":#/", *c))
             unit = c + 1;
-    return unit;
+    unit += *unit == '[';
+    return !strcmp(unit, "9002") || !strcmp(unit, "9003") ? "ft" : unit;
 }
 
 void cg_attribute_end(cg_parser *p, const cg_frame *frame) {
+    if (p->text == CG_TEXT_WORD && frame[-1].name.code == CG_HEIGHT) {
+        p->word[p->word_len] = 0;
+        cg_note_building(p, frame->feature, "measuredHeight", p->word);
+        return;
+    }
     if (!frame->in_attribute || p->text != CG_TEXT_WORD)
         return;
     p->word[p->word_len] = 0;
@@ -82,12 +91,21 @@ void cg_attribute_end(cg_parser *p, const cg_frame *frame) {
  * Storeys are those of the building itself; 9999 and the like stand for none. */
 void cg_note_building(cg_parser *p, uint32_t index, const char *key, const char *word) {
     const cg_feature_type *type = p->object.features.data[index].type;
-    double storeys;
+    double storeys, height;
+    int times;
     if (type->kind != GEO_BUILDING || type->part != CG_PART_BODY || !strcmp(key, "name"))
         return;
     if (!strcmp(key, "storeysAboveGround")) {
         if (index == 0 && noc_parse_double(word, &storeys) && storeys >= 0 && storeys <= MOST_STOREYS)
             p->object.storeys = storeys;
+        return;
+    }
+    if (!strcmp(key, "measuredHeight")) {
+        char text[sizeof(p->word) + sizeof(p->uom)];
+        snprintf(text, sizeof(text), "%s %s", word, p->xml ? unit_of(p->uom) : "");
+        if (lamp_quantity(text, LAMP_METRES, 1, '.', &height, &times) &&
+            height <= MOST_METRES) /* the greatest of several */
+            p->object.features.data[index].height = fmax(height, p->object.features.data[index].height);
         return;
     }
     noc_building_use use = building_use_told(key, word);

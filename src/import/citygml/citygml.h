@@ -32,7 +32,8 @@ typedef enum cg_code {
     CG_LABEL,             /* name of an object, or the date of its end */
     CG_ATTRIBUTE,         /* generic attribute: with its name in XML (1.0, 2.0), or as an element (3.0) */
     CG_ATTRIBUTE_NAME,
-    CG_ATTRIBUTE_VALUE,
+    CG_ATTRIBUTE_VALUE, /* or that of a height */
+    CG_HEIGHT,          /* of 3.0: measuredHeight before */
     CG_IMPLICIT,
     CG_MATRIX,
     CG_REFERENCE_POINT,
@@ -157,6 +158,7 @@ typedef struct cg_feature {
     uint32_t first_attribute, end_attribute; /* among these are its own, and those of its parts */
     uint32_t attributes;
     uint32_t first_geometry, end_geometry; /* its own, and those of its parts */
+    double height;                         /* m, measuredHeight of a building or a part of one; 0: it does not say */
 } cg_feature;
 
 /* Where an id leads: a run of surfaces in document order. */
@@ -465,6 +467,9 @@ void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *im
 void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *point); /* of a prototype */
 /* Metres a unit of x and y about a point: 1, but for degrees. */
 void cg_metres(const cg_parser *p, const double *point, double *east, double *north);
+void cg_emit_begin(cg_parser *p); /* the object, where it has not begun */
+/* block.c: an object of flat outlines with heights, as blocks. false: it is none, and nothing was done. */
+bool cg_emit_blocks(cg_parser *p);
 void cg_emit_shown(cg_parser *p);              /* the selected surfaces, as an object */
 size_t cg_kinds_told(const cg_parser *p);      /* of objects that were left out */
 void cg_stop(cg_parser *p, noc_status status); /* of the sink, which has reported it */

@@ -138,8 +138,11 @@ static noc_class class_of(const cg_parser *p, const cg_geometry *g) {
 
 /* ---- objects ---- */
 
-static void begin_object(cg_parser *p, int lod) {
+void cg_emit_begin(cg_parser *p) {
     const cg_feature *feature = &p->object.features.data[0];
+    int lod = feature->type->kind == GEO_TERRAIN ? -1 : p->selection.lod;
+    if (p->status || p->object_open)
+        return;
     geo_object object = {
         .kind = feature->type->kind, .id = feature->id, .lod = lod, .use = p->object.use, .storeys = p->object.storeys
     };
@@ -158,9 +161,7 @@ void cg_emit_end(cg_parser *p) {
 void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip) {
     const cg_geometry *g = &p->object.geometries.data[geometry];
     cg_tell_crs(p, g->implicit ? g->implicit->srs : polygon->srs);
-    bool terrain = p->object.features.data[0].type->kind == GEO_TERRAIN;
-    if (!p->status && !p->object_open)
-        begin_object(p, terrain ? -1 : p->selection.lod);
+    cg_emit_begin(p);
     if (p->status)
         return;
     cg_transform(p, polygon, g->implicit, flip);
@@ -230,7 +231,8 @@ static void emit_object(cg_parser *p) {
     cg_emit_installed_lamps(p);
     if (!s->shown && !s->duplicates)
         left_out(p, s->above ? " at or under the level of detail asked for" : "");
-    cg_emit_shown(p);
+    if (!cg_emit_blocks(p))
+        cg_emit_shown(p);
 }
 
 /* ---- the store ---- */

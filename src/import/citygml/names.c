@@ -117,7 +117,7 @@ static const cg_word gml_words[] = {
 static const cg_word city_words[] = {
     { "CityModel", CG_MODEL }, { "cityObjectMember", CG_MEMBER }, { "groupMember", CG_MEMBER },
     { "function", CG_FUNCTION }, { "usage", CG_FUNCTION }, { "class", CG_FUNCTION },
-    { "storeysAboveGround", CG_FUNCTION },
+    { "storeysAboveGround", CG_FUNCTION }, { "measuredHeight", CG_FUNCTION }, { "Height", CG_HEIGHT },
     { "terminationDate", CG_LABEL }, { "validTo", CG_LABEL },
     { "ImplicitGeometry", CG_IMPLICIT }, { "transformationMatrix", CG_MATRIX },
     { "referencePoint", CG_REFERENCE_POINT }, { "relativeGMLGeometry", CG_RELATIVE_GEOMETRY },

@@ -394,7 +394,7 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
     case CG_ATTRIBUTE: return cg_attribute_start(p, frame, a.name);
     case CG_ATTRIBUTE_NAME:
     case CG_ATTRIBUTE_VALUE:
-        if (frame->in_attribute)
+        if (frame->in_attribute || (parent && parent->name.code == CG_HEIGHT && frame->feature != CG_NONE))
             start_word(p, &a);
         return true;
     case CG_POINT:

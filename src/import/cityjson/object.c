@@ -124,8 +124,8 @@ static void add_value(cg_parser *p, uint32_t feature, const char *key, const jso
 }
 
 static void add_attributes(cg_parser *p, uint32_t feature, const json_t *object) {
-    static const char *const words[] = { "class",   "function",          "usage", "name", "terminationDate",
-                                         "validTo", "storeysAboveGround" };
+    static const char *const words[] = { "class",   "function",           "usage",         "name", "terminationDate",
+                                         "validTo", "storeysAboveGround", "measuredHeight" };
     bool generic = cg_may_be_lamp(p->object.features.data[feature].type);
     const char *key;
     json_t *value, *attributes = json_object_get(object, "attributes");

@@ -69,68 +69,26 @@ static double ground_under(const importer *im, const city_ground *city, const ge
 
 /* ---- surfaces ---- */
 
-static double area_of(const double *xyz, size_t points) {
-    double twice = 0;
-    for (size_t i = 0; i < points; i++) {
-        const double *a = xyz + 3 * i, *b = xyz + 3 * ((i + 1) % points);
-        twice += (a[0] - xyz[0]) * (b[1] - xyz[1]) - (a[1] - xyz[1]) * (b[0] - xyz[0]);
-    }
-    return twice / 2;
-}
-
 typedef struct block {
     importer *im;
     input *in;
     const geo_footprint *f;
     geo_triangles surfaces[NOC_CLASS_COUNT];
-    NOC_ARRAY(double) xyz;
     object_now now;
 } block;
 
-static bool add(block *b, noc_class cls, size_t rings, const size_t *sizes, const double *xyz, size_t points) {
+static bool add(void *ctx, noc_class cls, size_t rings, const size_t *sizes, const double *xyz) {
+    block *b = ctx;
     const geo_polygon polygon = { cls, b->f->id, rings, sizes, xyz };
+    size_t points = 0;
+    for (size_t r = 0; r < rings; r++)
+        points += sizes[r];
     repeat_polygon(&b->now, cls, xyz, points);
     if (geo_triangulate(&polygon, &b->surfaces[cls], b->in->issues)) {
         b->now.polygons++;
         b->now.by_class[cls]++;
     }
     return !b->surfaces[cls].no_memory;
-}
-
-/* At a height; turned over where it is seen from below. */
-static bool add_lid(block *b, noc_class cls, double z, bool below) {
-    const geo_footprint *f = b->f;
-    size_t at = 0;
-    b->xyz.len = 0;
-    for (size_t r = 0; r < f->ring_count; at += f->ring_size[r++]) {
-        bool turn = (area_of(f->xyz + 3 * at, f->ring_size[r]) > 0) == (below == (r == 0));
-        for (size_t i = 0; i < f->ring_size[r]; i++) {
-            const double *p = f->xyz + 3 * (at + (turn ? f->ring_size[r] - 1 - i : i));
-            const double point[3] = { p[0], p[1], z };
-            if (!array_append(&b->xyz, point, (size_t)3))
-                return false;
-        }
-    }
-    return add(b, cls, f->ring_count, f->ring_size, b->xyz.data, at);
-}
-
-static bool add_walls(block *b, double low, double high) {
-    const geo_footprint *f = b->f;
-    static const size_t four = 4;
-    size_t at = 0;
-    for (size_t r = 0; r < f->ring_count; at += f->ring_size[r++]) {
-        size_t n = f->ring_size[r];
-        bool turn =
-            (area_of(f->xyz + 3 * at, n) > 0) != (r == 0); /* outlines run counter-clockwise, yards the other way */
-        for (size_t i = 0; i < n; i++) {
-            const double *p = f->xyz + 3 * (at + i), *q = f->xyz + 3 * (at + (i + 1) % n);
-            const double *a = turn ? q : p, *c = turn ? p : q;
-            const double wall[12] = { a[0], a[1], low, c[0], c[1], low, c[0], c[1], high, a[0], a[1], high };
-            if (hypot(p[0] - q[0], p[1] - q[1]) > 1e-3 && !add(b, NOC_CLASS_WALL, 1, &four, wall, 4))
-                return false;
-        }
-    }
-    return true;
 }
 
 static noc_status hand_over(block *b) {
@@ -160,8 +118,14 @@ static noc_status stand(importer *im, const pending_footprint *p, double ground)
         geo_issue(b.in->issues, GEO_SKIPPED, "building whose height is none", b.f->id);
         return NOC_OK;
     }
-    bool ok = add_walls(&b, ground + from, ground + to) && add_lid(&b, NOC_CLASS_ROOF, ground + to, false) &&
-              (from <= 0 || add_lid(&b, NOC_CLASS_OTHER, ground + from, true));
+    const geo_block shape = { b.f->ring_count,
+                              b.f->ring_size,
+                              b.f->xyz,
+                              ground + from,
+                              ground + to,
+                              1e-3,
+                              from > 0 ? (int)NOC_CLASS_OTHER : -1 };
+    bool ok = geo_block_make(&shape, add, &b);
     size_t first = im->scene->meshes.len;
     noc_status status = ok ? hand_over(&b) : noc_no_memory(im->log, b.in->path);
     for (size_t i = first; i < im->scene->meshes.len; i++)
@@ -169,7 +133,6 @@ static noc_status stand(importer *im, const pending_footprint *p, double ground)
     count_one(b.in);
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&b.surfaces[c]);
-    array_free(&b.xyz);
     return status;
 }
 
