@@ -425,4 +425,33 @@ test $status = 0 && quiet; result $? "a mesh is seen from outside"
 run render down.obj --view street --size 32x18 --frames 1 -o out.png
 test $status = 0 && grep -q '^nocturne: warning: view street: the scene has none, so it is seen from outside$' err
 result $? "and where its street was asked for, that is said"
+# A city whose degrees are in either order, with a lamp beside it, whose order is GeoJSON's: they are put together.
+for order in city.lon-first city.lat-first; do
+    python3 - $order <<'PY'
+import json, sys
+def corner(x, y, z):
+    lon, lat = 11.42 + x / 73300, 48.75 + y / 111200
+    return "%.7f %.7f %g" % ((lon, lat, z) if "lon" in sys.argv[1] else (lat, lon, z))
+def face(points):
+    return ("<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>%s</gml:posList>"
+            "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>" %
+            " ".join(corner(*p) for p in points + points[:1]))
+a, b, c, d = (0, 0), (10, 0), (10, 8), (0, 8)
+faces = [[p + (0,) for p in (a, d, c, b)], [p + (6,) for p in (a, b, c, d)]]
+faces += [[p + (0,), q + (0,), q + (6,), p + (6,)] for p, q in ((a, b), (b, c), (c, d), (d, a))]
+open(sys.argv[1] + ".gml", "w").write(
+    '<CityModel xmlns="http://www.opengis.net/citygml/2.0" xmlns:gml="http://www.opengis.net/gml" '
+    'xmlns:bldg="http://www.opengis.net/citygml/building/2.0"><gml:boundedBy><gml:Envelope srsName="EPSG:4326"/>'
+    '</gml:boundedBy><cityObjectMember><bldg:Building><bldg:lod1MultiSurface><gml:MultiSurface>' +
+    "".join(map(face, faces)) + '</gml:MultiSurface></bldg:lod1MultiSurface></bldg:Building></cityObjectMember>'
+    '</CityModel>')
+json.dump({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"highway": "street_lamp"},
+           "geometry": {"type": "Point", "coordinates": [11.4198, 48.7499]}}]}, open("beside.geojson", "w"))
+PY
+    run render $order.gml beside.geojson --size 64x36 --frames 1 --show class -o order.png
+    warned=$(grep -c 'only with latitude and longitude exchanged: done' err)
+    test $status = 0 && grep -q 'EPSG:32632' out && grep -q '^  lamps  *1 mapped' out &&
+        test "$warned" = "$(echo $order | grep -c lon)"
+    result $? "degrees of $order beside a lamp" "$(cat err)"
+done
 finish

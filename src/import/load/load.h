@@ -181,6 +181,10 @@ typedef struct importer {
     double origin[3];
     const char *placed_by; /* path of the input that settled it */
     bool far_said;         /* that an input lies far from the others */
+    struct {
+        bool asked, known;
+        double lonlat[2];
+    } elsewhere; /* the middle of a map in degrees, for cities whose order of axes is not known (axes.c) */
     /* what was taken (take.c) */
     object_records records;
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
@@ -386,6 +390,9 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
  * CRS, else in the same local metres as all the rest. */
 noc_status place_mesh(reading *r);
 noc_status place_mesh_points(void *reading, double *xyz, size_t count);
+/* axes.c: does a city, of which that is a point in the order that its CRS has, lie where the maps among the inputs do
+ * only with latitude and longitude exchanged? The first call that must know reads these maps. */
+bool axes_exchanged(importer *im, const input *in, geo_crs *crs, double x, double y);
 /* The point with its axes exchanged, in the scene; false where it then has no place. */
 bool place_exchanged(importer *im, const given_place *given, double xy[2]);
 void place_finish_file(reading *r, bool read);

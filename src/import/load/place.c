@@ -124,6 +124,11 @@ static void decide_axes(reading *r, source_crs *s, double x, double y, const cha
     double given = geo_crs_outside(s->crs, x, y);
     if (given == 0) {
         s->axes_decided = true;
+        if (!(s->swap = axes_exchanged(r->im, r->in, s->crs, x, y)))
+            return;
+        noc_warn(r->log, "%s: lies where the other inputs do only with latitude and longitude exchanged: done",
+                 r->in->path);
+        geo_issue(issues, GEO_GUESSED, "axes exchanged to meet the other inputs", id);
     } else if (geo_crs_outside(s->crs, y, x) == 0) {
         s->axes_decided = s->swap = true;
         noc_warn(r->log, "%s: the coordinates fit %s only with their axes exchanged: done", r->in->path,
