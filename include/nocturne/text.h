@@ -33,7 +33,7 @@ NOC_API bool noc_text_numbers(const char *text, char separator, size_t count, do
 
 /* Writes size bytes into a file that has its name only when it is complete and on the disk: until then what was there
  * stays. It keeps the permissions of the file that it replaces, and a symbolic link to it. NOC_ERR_IO or
- * NOC_ERR_MEMORY after reporting to the log, and nothing is left. */
+ * NOC_ERR_MEMORY after reporting to the log, and nothing is left; NOC_ERR_ARGUMENT without a path or text. */
 NOC_API noc_status noc_text_save(const char *path, const char *text, size_t size, noc_log *log);
 
 #ifdef __cplusplus

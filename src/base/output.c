@@ -179,6 +179,8 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
 
 noc_status noc_text_save(const char *path, const char *text, size_t size, noc_log *log) {
     output o;
+    if (!path || (size && !text))
+        return noc_null(log, __func__);
     noc_status status = output_open(&o, path, log);
     if (status)
         return status;

@@ -192,6 +192,8 @@ static noc_camera camera;
     P(0, noc_text_clean(NULL, 1, "a")[0] == 0)                                                                         \
     P(0, noc_text_clean((char[4]){ 1 }, 4, NULL)[0] == 0)                                                              \
     P(0, noc_text_nearest(NULL, NULL, 1) == NULL)                                                                      \
+    P(0, noc_text_save(NULL, "a", 1, NULL) == NOC_ERR_ARGUMENT)                                                        \
+    P(0, noc_text_save("/nonexistent/a", NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                           \
     P(0, !noc_text_numbers(NULL, ',', 1, &(double){ 0 }))                                                              \
     P(0, !noc_text_numbers("1", ',', 1, NULL))                                                                         \
     P(0, noc_lab_reference(NULL, scene, &camera, NULL, NULL, &(noc_image *){ 0 }, NULL, NULL) == NOC_ERR_ARGUMENT)     \

@@ -465,8 +465,8 @@ run experiment black.json -o v --cache cache
 test $status = 0 && grep -q '^nocturne: warning: one, own: the reference is black' err
 result $? "a reference that is black is told"
 mkdir -p x/1-one-own-alone-frames.svg
-expect "a plot that cannot be written" 1 '^nocturne: x/1-one-own-alone-frames.svg: Is a directory' experiment one.json \
-    -o x --cache cache
+expect "a plot that cannot be written" 1 '^nocturne: x/1-one-own-alone-frames.svg: cannot be written: it is a dir' \
+    experiment one.json -o x --cache cache
 test ! -e x/report.md && test -z "$(ls -A x | grep '^\.')"; result $? "leaves no half of a report"
 
 # Two at once in one cache; the second in one folder gives way.
