@@ -377,6 +377,7 @@ static double middle(const piece *p) {
 }
 
 #define WORK_AT_ONCE 2e7  /* points times edges met at once, that GLU does in a second */
+#define HOLE_WORK 0.25    /* edges met at once that a ring costs as much as: GLU numbers all its edges anew */
 #define WORK_OF_PIECE 2e5 /* the same, of pieces: small ones cost less in all, but their cuts show in the triangles */
 #define POINTS_AT_ONCE 500000 /* GLU takes half a kilobyte a point */
 #define MOST_MADE 8           /* points made by cutting, a point given */
@@ -395,7 +396,7 @@ static void tessellate_piece(struct job *job, piece *p, const struct division *d
     size_t n = p->vertex.len;
     int direction = best_direction(met, d->most_work / (double)n);
     turn(p, axis[direction]);
-    double work = (double)n * met[direction];
+    double work = (double)n * (met[direction] + HOLE_WORK * (double)p->ring_size.len);
     piece half[2] = { 0 };
     if (n > POINTS_AT_ONCE || work > d->most_work)
         cut(job, p, middle(p), half);
