@@ -9,6 +9,9 @@
  * chains over the same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask,
  * add, and ask again (every lamp does) at a constant cost a triangle.
  *
+ * Where many long and thin triangles overlap (a fan over a large round place), each is in the finer cells that it does
+ * touch instead.
+ *
  * Queries may come from several threads while the scene is not changed: bringing the grids up to date is locked. Models
  * and their instances are no ground, which does not move.
  */
@@ -100,8 +103,12 @@ static size_t bucket_of(const struct noc_ground *g, int level, int64_t x, int64_
     return (h ^ h >> 32) & (g->buckets - 1);
 }
 
+enum { MOST_CELLS = 128 };
+#define CROWDED 1024 /* triangles of a bucket, beyond which they are put into finer cells */
+
 /* The buckets that a triangle is in, 1 to 4, and its level. */
-static int buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t t, size_t buckets[4], int *level) {
+static int buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t t, size_t buckets[MOST_CELLS],
+                      int *level) {
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     double lo[2], hi[2];
     int n = 0, exponent;
@@ -118,9 +125,86 @@ static int buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t
     return n;
 }
 
+/* Widens [lo, hi] by the x at which the line from a to b has that y, where it reaches it. */
+static void widen_at(const double *a, const double *b, double y, double *lo, double *hi) {
+    if ((a[1] < y) == (b[1] < y))
+        return;
+    double x = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+    *lo = NOC_MIN(*lo, x);
+    *hi = NOC_MAX(*hi, x);
+}
+
+/* The cells of a level that a triangle touches, row by row; more than MOST_CELLS: too many. */
+static int touched(const struct noc_ground *g, const noc_scene *scene, size_t t, int level,
+                   size_t buckets[MOST_CELLS]) {
+    double p[3][2], scale = g->cells_a_metre[level], side = 1 / scale;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++)
+            p[i][k] = corner(scene, t, i)[k];
+    double first = floor(NOC_MIN(p[0][1], NOC_MIN(p[1][1], p[2][1])) * scale);
+    double last = floor(NOC_MAX(p[0][1], NOC_MAX(p[1][1], p[2][1])) * scale);
+    int n = 0;
+    for (double y = first; y <= last && n <= MOST_CELLS; y++) {
+        double lo = INFINITY, hi = -INFINITY, slack;
+        for (int i = 0; i < 3; i++) {
+            const double *a = p[i], *b = p[(i + 1) % 3];
+            if (a[1] >= y * side && a[1] <= (y + 1) * side) {
+                lo = NOC_MIN(lo, a[0]);
+                hi = NOC_MAX(hi, a[0]);
+            }
+            widen_at(a, b, y * side, &lo, &hi);
+            widen_at(a, b, (y + 1) * side, &lo, &hi);
+        }
+        slack = 1e-9 * (fabs(lo) + fabs(hi)); /* of rounding: a cell too many does no harm */
+        for (double x = floor((lo - slack) * scale); x <= floor((hi + slack) * scale); x++) {
+            if (n == MOST_CELLS)
+                return MOST_CELLS + 1;
+            buckets[n++] = bucket_of(g, level, (int64_t)x, (int64_t)y);
+        }
+    }
+    return n;
+}
+
+/* As buckets_of; in the finest cells that are few enough where one of those is crowded. counts: of each bucket, NULL:
+ * none is. */
+static int sparse_buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t t, const uint32_t *counts,
+                             size_t buckets[MOST_CELLS], int *level) {
+    int n = buckets_of(g, scene, t, buckets, level);
+    bool crowded = false;
+    for (int i = 0; i < n && counts; i++)
+        crowded = crowded || counts[buckets[i]] > CROWDED;
+    size_t finer[MOST_CELLS];
+    for (int m; crowded && *level > 0 && (m = touched(g, scene, t, *level - 1, finer)) > 0 && m <= MOST_CELLS;
+         --*level) {
+        memcpy(buckets, finer, (size_t)m * sizeof(*finer));
+        n = m;
+    }
+    return n;
+}
+
 static void note_level(struct noc_ground *g, int level, noc_class cls) {
     g->levels |= 1ull << level;
     g->classes[level] |= 1u << cls;
+}
+
+static void count_all(struct noc_ground *g, const noc_scene *scene, size_t triangles, const uint32_t *counts) {
+    size_t mesh = 0, buckets[MOST_CELLS];
+    int level;
+    for (size_t t = next_obstacle(scene, &mesh, 0, triangles); t < triangles;
+         t = next_obstacle(scene, &mesh, t + 1, triangles))
+        for (int n = sparse_buckets_of(g, scene, t, counts, buckets, &level); n--;)
+            g->offsets[buckets[n]]++;
+}
+
+static void fill_all(struct noc_ground *g, const noc_scene *scene, size_t triangles, const uint32_t *counts) {
+    size_t mesh = 0, buckets[MOST_CELLS];
+    int level;
+    for (size_t t = next_obstacle(scene, &mesh, 0, triangles); t < triangles;
+         t = next_obstacle(scene, &mesh, t + 1, triangles)) {
+        for (int n = sparse_buckets_of(g, scene, t, counts, buckets, &level); n--;)
+            g->ids[--g->offsets[buckets[n]]] = (uint32_t)t;
+        note_level(g, level, material_of(scene, t)->cls);
+    }
 }
 
 /* NULL: memory was refused. */
@@ -135,25 +219,26 @@ static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles)
     for (g->buckets = 1024; g->buckets < triangles;)
         g->buckets *= 2;
     g->offsets = noc_calloc(g->buckets + 1, sizeof(*g->offsets));
-    for (int fill = 0; fill < 2 && g->offsets; fill++) {
-        size_t mesh = 0, t = next_obstacle(scene, &mesh, 0, triangles);
-        for (; t < triangles; t = next_obstacle(scene, &mesh, t + 1, triangles)) {
-            size_t buckets[4];
-            int level;
-            for (int n = buckets_of(g, scene, t, buckets, &level); n--;)
-                if (fill)
-                    g->ids[--g->offsets[buckets[n]]] = (uint32_t)t;
-                else
-                    g->offsets[buckets[n]]++;
-            note_level(g, level, material_of(scene, t)->cls);
+    uint32_t *counts = NULL;
+    bool good = g->offsets != NULL;
+    if (good)
+        count_all(g, scene, triangles, NULL);
+    for (size_t i = 0; good && i < g->buckets && !counts; i++)
+        if (g->offsets[i] > CROWDED) {
+            counts = g->offsets;
+            g->offsets = noc_calloc(g->buckets + 1, sizeof(*g->offsets));
+            good = g->offsets != NULL;
         }
-        if (fill)
-            return g;
-        for (size_t i = 1; i <= g->buckets; i++) /* counts to ends; filling turns ends into beginnings */
-            g->offsets[i] += g->offsets[i - 1];
-        if (!(g->ids = noc_alloc(g->offsets[g->buckets] * sizeof(*g->ids))))
-            break;
-    }
+    if (good && counts)
+        count_all(g, scene, triangles, counts);
+    for (size_t i = 1; good && i <= g->buckets; i++) /* counts to ends; filling turns ends into beginnings */
+        g->offsets[i] += g->offsets[i - 1];
+    good = good && (g->ids = noc_alloc(g->offsets[g->buckets] * sizeof(*g->ids)));
+    if (good)
+        fill_all(g, scene, triangles, counts);
+    free(counts);
+    if (good)
+        return g;
     noc_ground_free(g);
     return NULL;
 }
@@ -169,7 +254,7 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
     }
     size_t mesh = noc_scene_mesh_of(scene, g->covered), t = next_obstacle(scene, &mesh, g->covered, triangles);
     for (; t < triangles; t = next_obstacle(scene, &mesh, t + 1, triangles)) {
-        size_t buckets[4];
+        size_t buckets[MOST_CELLS];
         int level;
         for (int n = buckets_of(g, scene, t, buckets, &level); n--;) {
             ground_link link = { (uint32_t)t, g->chains[buckets[n]] };

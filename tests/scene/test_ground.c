@@ -294,11 +294,43 @@ static void test_two_continents(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* Long and thin triangles over one place, as those of a large round surface: a ray looks at few of them, and finds what
+ * all of them hold. */
+static void test_thin(void **ctx) {
+    enum { SPIKES = 20000, RAYS = 400 };
+    noc_scene *scene = noc_scene_create(NULL);
+    int ground = material(scene, NOC_CLASS_GROUND);
+    double *xyz = noc_alloc(9 * SPIKES * sizeof(*xyz)), looked = 0;
+    uint32_t *indices = noc_alloc(3 * SPIKES * sizeof(*indices));
+    for (int i = 0; i < SPIKES; i++) {
+        double angle = 2 * M_PI * i / SPIKES, width = 2 * M_PI / SPIKES, r[3] = { 300, 1000, 300 };
+        for (int k = 0; k < 3; k++) {
+            xyz[9 * i + 3 * k] = r[k] * cos(angle + width * k * .7);
+            xyz[9 * i + 3 * k + 1] = r[k] * sin(angle + width * k * .7);
+            xyz[9 * i + 3 * k + 2] = uniform(0, 5);
+            indices[3 * i + k] = (uint32_t)(3 * i + k);
+        }
+    }
+    noc_mesh mesh = {
+        .vertex_count = 3 * SPIKES, .positions = xyz, .triangle_count = SPIKES, .indices = indices, .material = ground
+    };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+    compare_at_random(scene, 1000, RAYS);
+    for (int i = 0; i < RAYS; i++)
+        looked += (double)noc_ground_load(scene, uniform(-1000, 1000), uniform(-1000, 1000));
+    print_message("# %.0f of %d triangles a ray\n", looked / RAYS, SPIKES);
+    assert_true(looked / RAYS < SPIKES / 20);
+    free(xyz);
+    free(indices);
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
         cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),       cmocka_unit_test(test_two_continents),
+        cmocka_unit_test(test_thin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
