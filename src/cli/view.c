@@ -112,18 +112,16 @@ const cli_command cli_view = {
 /* The first line of the file becomes the token. */
 static int read_token(view_args *args) {
     char *to = args->own_token;
-    struct stat st;
     int fd = open(args->token_file, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (fd < 0 || fstat(fd, &st) || S_ISDIR(st.st_mode)) {
-        int error = fd < 0 ? errno : EISDIR;
-        if (fd >= 0)
-            close(fd);
+    ssize_t n = fd >= 0 ? read(fd, to, sizeof(args->own_token)) : -1; /* of a folder it is an error, too */
+    int error = errno;
+    if (fd >= 0)
+        close(fd);
+    if (n < 0) {
         cli_error("--token-file: %s: %s", args->token_file, strerror(error));
         return CLI_FAILURE;
     }
-    ssize_t n = read(fd, to, sizeof(args->own_token));
-    close(fd);
-    size_t size = n > 0 ? (size_t)n : 0, line = 0;
+    size_t size = (size_t)n, line = 0;
     while (line < size && to[line] != '\n' && to[line] != '\r')
         line++;
     if (line > LONGEST_TOKEN)
