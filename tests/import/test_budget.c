@@ -363,6 +363,7 @@ static void obj_libraries_are_read_once(void **state) {
     assert_int_equal(obj_plain_materials(&chunks, &beside, NULL, &all, issues, "once.obj", NULL), NOC_OK);
     assert_string_equal(text, "mtllib once.mtl\n                \nmtllib other.mtl\n               \nv 0 0 0\n");
     obj_chunks_free(&chunks);
+    free(beside.missing);
     geo_issues_destroy(issues);
 }
 

@@ -59,6 +59,8 @@ static obj_text read_text(const char *text, size_t size, int threads, bool place
     assert_int_equal(obj_plain_materials(&chunks, &folder, places ? &none : NULL, &budget, issues, "x.obj", NULL), 0);
     assert_true(obj_text_read(&t, &chunks, places, issues));
     obj_chunks_free(&chunks);
+    obj_images_free(&none);
+    free(folder.missing);
     free(copy);
     return t;
 }
