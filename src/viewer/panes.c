@@ -138,6 +138,22 @@ bool panes_set(panes *p, int which, const char *name, const char *value, panes_n
     return true;
 }
 
+/* Returns the caption of a pane among others. */
+static const char *caption_of(const panes *p, int which) {
+    static const char *const names[] = { "reference",      "importance sampling", "RIS, lists",
+                                         "RIS, influence", "RIS, light BVH",      "ReSTIR" };
+    if (p->layout == WIRE_METHODS)
+        return names[which];
+    if (p->layout == WIRE_DIFFERENCE)
+        return which == 2 ? "difference" : which ? "reference" : "this";
+    return p->layout == WIRE_DIVIDER ? which ? "B" : "A" : "";
+}
+
+/* The reference is shown as it was rendered: a pane of that method or of that caption is never smoothed. */
+static bool is_reference(const panes *p, int which) {
+    return p->pane[which].look.render.method == NOC_METHOD_REFERENCE || !strcmp(caption_of(p, which), "reference");
+}
+
 /* ---- frames ---- */
 
 noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int height) {
@@ -162,7 +178,7 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
                         const noc_progress *progress) {
     pane *to = &p->pane[which];
     noc_render_params params = look_params(&to->look, width, height);
-    bool calm = to->look.smooth && !to->look.show && (double)width * height <= MOST_SMOOTHED;
+    bool calm = to->look.smooth && !to->look.show && !is_reference(p, which) && (double)width * height <= MOST_SMOOTHED;
     bool varies = rests && params.accumulate; /* a mean has one */
     params.aovs |= varies ? 1u << NOC_AOV_VARIANCE : calm && !rests ? NOC_SMOOTH_AOVS : 0;
     uint64_t change = p->change;
@@ -433,23 +449,15 @@ noc_status panes_publish(panes *p, int which, const panes_picture *what) {
 
 bool panes_watched(panes *p, int which, double now) { return outbox_waits(p->box, which, now) < LOOKS_AWAY; }
 
-/* What a pane is, beside others. */
-static const char *caption_of(const panes *p, int which) {
-    static const char *const names[] = { "reference",      "importance sampling", "RIS, lists",
-                                         "RIS, influence", "RIS, light BVH",      "ReSTIR" };
-    if (p->layout == WIRE_METHODS)
-        return names[which];
-    if (p->layout == WIRE_DIFFERENCE)
-        return which == 2 ? "difference" : which ? "reference" : "this";
-    return p->layout == WIRE_DIVIDER ? which ? "B" : "A" : "";
-}
-
 json_t *panes_state(const panes *p) {
     json_t *list = json_array();
     for (int i = 0; i < p->count; i++) {
         const look *l = &p->pane[i].look;
-        json_array_append_new(list, json_pack("{s:o?,s:o?,s:s}", "values", look_values(l), "idle",
-                                              look_idle(l, p->has_map), "caption", caption_of(p, i)));
+        json_t *idle = look_idle(l, p->has_map);
+        if (is_reference(p, i))
+            json_object_set_new(idle, "smooth", json_string("the reference is not smoothed"));
+        json_array_append_new(list, json_pack("{s:o?,s:o?,s:s}", "values", look_values(l), "idle", idle, "caption",
+                                              caption_of(p, i)));
     }
     return list;
 }

@@ -120,6 +120,45 @@ def test_layouts(p):
     c.close()
 
 
+def test_the_reference_is_never_smoothed(p):
+    """Neither a pane of that method, nor one of that caption whatever its method, though its look has it."""
+    c = enter(p, 48, 27)
+    turns = 0
+
+    def moving(panes):
+        """Flag `smoothed` of each pane's first moving picture that shows an input of now."""
+        nonlocal turns
+        found, before = {}, turns
+        while not panes <= set(found):
+            turns += 1
+            c.say("input", n=turns, turn=[0.01, 0])
+            picture = c.picture()
+            if picture.moving and picture.input > before:
+                found.setdefault(picture.pane, bool(picture.flags & 2))
+        return found
+
+    c.say("layout", name="difference")
+    panes = said(c, "state", lambda m: m["layout"] == "difference")["panes"]
+    assert [one["caption"] for one in panes] == ["this", "reference", "difference"], panes
+    assert panes[1]["values"]["smooth"] == "true" and "reference" in panes[1]["idle"]["smooth"], panes[1]
+    assert moving({0, 1, 2}) == {0: True, 1: False, 2: False}
+    c.say("set", pane=1, name="method", value="ris")
+    said(c, "state", lambda m: m["panes"][1]["values"]["method"] == "ris")
+    assert moving({0, 1, 2}) == {0: True, 1: False, 2: False}
+    c.say("layout", name="methods")
+    said(c, "state", lambda m: m["layout"] == "methods")
+    c.say("set", pane=-1, name="smooth", value="on")
+    said(c, "state", lambda m: all(one["values"]["smooth"] == "true" for one in m["panes"]))
+    assert moving({0})[0] is False
+    c.say("layout", name="single")
+    said(c, "state", lambda m: m["layout"] == "single")
+    c.say("set", name="method", value="reference")
+    state = said(c, "state", lambda m: m["panes"][0]["values"]["method"] == "reference")
+    assert "reference" in state["panes"][0]["idle"]["smooth"], state["panes"][0]["idle"]
+    assert moving({0}) == {0: False}
+    c.close()
+
+
 def test_a_picture_that_moves_is_as_bright(p):
     c = enter(p, 960, 540)
     c.say("set", name="frames", value="8")
