@@ -58,7 +58,7 @@ static void check(const wire_message *m) {
         FUZZ_REQUIRE(m->set.pane >= -1 && m->set.pane < WIRE_PANES && m->set.name && m->set.value);
         FUZZ_REQUIRE(strlen(m->set.name) <= 4096 && strlen(m->set.value) <= 4096);
         break;
-    case WIRE_LAYOUT: FUZZ_REQUIRE(m->layout <= WIRE_DIFFERENCE); break;
+    case WIRE_LAYOUT: FUZZ_REQUIRE(m->layout.name <= WIRE_DIFFERENCE); break;
     case WIRE_ASK: check_ask(&m->ask); break;
     case WIRE_SAVE:
         FUZZ_REQUIRE(m->save.what <= WIRE_CSV && m->save.pane < WIRE_PANES && m->save.cameras <= WIRE_CAMERAS);

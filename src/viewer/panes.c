@@ -162,8 +162,11 @@ noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int he
     params.width = width;
     params.height = height;
     params.method = NOC_METHOD_HEADLIGHT;
+    uint64_t world = world_published(p->world);
     noc_status status = noc_view_render(to->view, camera, &params, NULL);
     noc_view_get_stats(to->view, &to->stats);
+    to->method = params.method;
+    to->world = world;
     return status;
 }
 
@@ -181,7 +184,7 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
     bool calm = to->look.smooth && !to->look.show && !is_reference(p, which) && (double)width * height <= MOST_SMOOTHED;
     bool varies = rests && params.accumulate; /* a mean has one */
     params.aovs |= varies ? 1u << NOC_AOV_VARIANCE : calm && !rests ? NOC_SMOOTH_AOVS : 0;
-    uint64_t change = p->change;
+    uint64_t change = p->change, world = world_published(p->world);
     noc_status status = noc_view_render(to->view, camera, &params, progress);
     noc_view_get_stats(to->view, &to->stats);
     if (!to->stats.frames) /* what was broken off has taken the picture before it along */
@@ -194,6 +197,8 @@ noc_status panes_render(panes *p, int which, const noc_camera *camera, int width
         to->calm = smooth(p, to);
     to->width = width;
     to->height = height;
+    to->method = params.method;
+    to->world = world;
     to->shown = change;
     return NOC_OK;
 }
@@ -376,12 +381,28 @@ static void set_number(json_t *to, const char *key, double value) {
     json_object_set_new(to, key, isfinite(value) ? json_real(value) : json_null());
 }
 
+/* What the newest picture of a pane was made with. A difference is as old as the older of the two that it is of. */
+static void tell_made(const panes *p, int which, json_t *m) {
+    const pane *of = &p->pane[which];
+    uint64_t older = p->pane[0].world < p->pane[1].world ? p->pane[0].world : p->pane[1].world;
+    json_object_set_new(m, "world", json_integer((json_int_t)(of->view ? of->world : older)));
+    look made = of->look;
+    made.render.method = of->method;
+    static const char *const names[] = { "show", "method" };
+    for (int i = 0; i < 2 && of->view; i++) {
+        char text[64];
+        look_get(&made, names[i], text, sizeof(text));
+        json_object_set_new(m, names[i], json_string(text));
+    }
+}
+
 static char *stats_of(panes *p, int which, const panes_picture *what, const wire_head *head) {
     const pane *of = &p->pane[which];
     bool fewer = !of->view && p->pane[1].stats.frames < p->pane[0].stats.frames; /* a difference has those of both */
     const noc_frame_stats *f = &p->pane[of->view ? which : fewer].stats;
     json_t *m = wire_begin("stats");
     json_object_set_new(m, "pane", json_integer(which));
+    tell_made(p, which, m);
     json_object_set_new(m, "frames", json_integer((json_int_t)f->frames));
     set_number(m, "seconds", f->wall_seconds);
     set_number(m, "rays", f->wall_seconds > 0 ? (double)(f->rays_primary + f->rays_shadow) / f->wall_seconds : 0);
@@ -456,8 +477,8 @@ json_t *panes_state(const panes *p) {
         json_t *idle = look_idle(l, p->has_map);
         if (is_reference(p, i))
             json_object_set_new(idle, "smooth", json_string("the reference is not smoothed"));
-        json_array_append_new(list, json_pack("{s:o?,s:o?,s:s}", "values", look_values(l), "idle", idle, "caption",
-                                              caption_of(p, i)));
+        json_array_append_new(list, json_pack("{s:o?,s:o?,s:s,s:b}", "values", look_values(l), "idle", idle, "caption",
+                                              caption_of(p, i), "failed", p->pane[i].failed));
     }
     return list;
 }

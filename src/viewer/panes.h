@@ -12,6 +12,8 @@ typedef struct pane {
     noc_view *view; /* NULL: the difference of the panes 0 and 1 */
     look look;
     int width, height;      /* of its last frame */
+    noc_method method;      /* of that */
+    uint64_t world;         /* world_published before that */
     noc_smoother *smoother; /* of moving pictures; NULL until there was one */
     const noc_image *calm;  /* its picture of the last frame; NULL: that is shown as it is */
     bool varies;            /* that kept its variance */

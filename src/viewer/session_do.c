@@ -20,6 +20,7 @@ static json_t *command_of(session *s) {
 }
 
 static json_t *state_of(session *s, json_t *m) {
+    json_object_set_new(m, "input", json_integer(s->input));
     json_object_set_new(m, "command", command_of(s));
     json_object_set_new(m, "camera", mover_camera(&s->mover));
     json_object_set_new(m, "navigate", mover_navigation(&s->mover));
@@ -93,8 +94,11 @@ void session_tell_welcome(session *s) {
 
 double session_aspect(const session *s) { return s->width && s->height ? (double)s->width / s->height : 16.0 / 9; }
 
+/* Pictures from now on show the message of that number; 0: it has none. */
+static void number(session *s, uint32_t n) { s->input = n ? n : s->input; }
+
 static void do_input(session *s, const wire_input *input) {
-    s->input = input->n;
+    number(s, input->n);
     mover_input(&s->mover, input, session_aspect(s), session_now());
     session_changed(s);
 }
@@ -116,7 +120,7 @@ static void went(session *s, bool goes, bool still, const char *why) {
 static void do_jump(session *s, const wire_message *m) {
     const double at[2] = { m->jump.x, m->jump.y }, now = session_now();
     char why[256] = "";
-    s->input = m->jump.n;
+    number(s, m->jump.n);
     bool goes = m->jump.has_place ? mover_look(&s->mover, m->jump.place, m->jump.distance, now, why, sizeof(why))
                                   : mover_jump(&s->mover, at, session_aspect(s), now, why, sizeof(why));
     went(s, goes, m->jump.still, why);
@@ -126,6 +130,7 @@ static void do_jump(session *s, const wire_message *m) {
 static void do_set(session *s, const wire_message *m) {
     char why[256] = "";
     panes_need need;
+    number(s, m->set.n);
     if (!panes_set(&s->panes, m->set.pane, m->set.name, m->set.value, &need, why, sizeof(why)))
         session_note(s, "error", why);
     if (need == PANES_ANEW)
@@ -133,6 +138,17 @@ static void do_set(session *s, const wire_message *m) {
     s->redraw = s->redraw > (int)need + 1 ? s->redraw : (int)need + 1;
     session_wake(s);
     s->told_less = true;
+}
+
+static void do_world(session *s, const wire_message *m) {
+    char why[256] = "";
+    number(s, m->set.n);
+    told(s, world_set(s->setup->world, m->set.name, m->set.value, why, sizeof(why)), why);
+}
+
+static void do_layout(session *s, const wire_message *m) {
+    number(s, m->layout.n);
+    told(s, !panes_set_layout(&s->panes, m->layout.name), "there is no memory for these panes");
 }
 
 static void do_ask(session *s, const wire_ask *ask) {
@@ -162,13 +178,13 @@ void session_do(session *s, const wire_message *m) {
         told(s, mover_navigate(&s->mover, m->navigate.mode, m->navigate.speed, now, why, sizeof(why)), why);
         break;
     case WIRE_CAMERA:
-        s->input = m->camera.n ? m->camera.n : s->input;
+        number(s, m->camera.n);
         went(s, mover_go(&s->mover, &m->camera.to, session_aspect(s), now, why, sizeof(why)), m->camera.still, why);
         break;
     case WIRE_JUMP: do_jump(s, m); break;
     case WIRE_SET: do_set(s, m); break;
-    case WIRE_WORLD: told(s, world_set(s->setup->world, m->set.name, m->set.value, why, sizeof(why)), why); break;
-    case WIRE_LAYOUT: told(s, !panes_set_layout(&s->panes, m->layout), "there is no memory for these panes"); break;
+    case WIRE_WORLD: do_world(s, m); break;
+    case WIRE_LAYOUT: do_layout(s, m); break;
     case WIRE_ASK: do_ask(s, &m->ask); break;
     case WIRE_CANCEL:
         if (s->asker)

@@ -24,7 +24,7 @@ struct session {
     panes panes;
     pace pace;
     int width, height;       /* of a pane's picture; 0: not told yet */
-    uint32_t input;          /* the newest that the camera follows */
+    uint32_t input;          /* the newest message with a number that was done */
     double moved;            /* when something last changed */
     double sent[WIRE_PANES]; /* when a picture of a pane at rest went out last */
     int redraw;              /* 0, or 1 + panes_need: all panes are to be shown again */

@@ -55,6 +55,7 @@ static bool render(session *s, int which, int level, bool rests) {
         noc_log_copy_error(s->panes.log, why, sizeof(why));
         session_note(s, "error", *why ? why : noc_status_text(status));
         s->panes.pane[which].failed = true; /* until something changes: the next one would fail, too */
+        s->told_less = true;
     }
     return !status;
 }
@@ -155,7 +156,8 @@ static double step_resting(session *s) {
         any = true;
         if (has_failed(s, i))
             continue;
-        bool full = !first && !s->resting, as_it_is = s->redraw == 1 + PANES_PUBLISH && p->shown;
+        bool full = !first && !s->resting;
+        bool as_it_is = s->redraw == 1 + PANES_PUBLISH && p->shown == s->panes.change;
         if (p->view && !as_it_is && (s->redraw || !(full && is_done(s, i))) && !render(s, i, s->resting, true)) {
             if (p->failed)
                 continue;

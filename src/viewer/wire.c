@@ -85,6 +85,9 @@ static uint32_t take_count(reading *r, const char *key) {
     return (uint32_t)value;
 }
 
+/* Reads the number by which pictures acknowledge the message; 0: none. */
+static uint32_t take_n(reading *r) { return has(r, "n") ? take_count(r, "n") : 0; }
+
 static const char *text_of(const json_t *value) {
     const char *text = json_string_value(value);
     return text && json_string_length(value) <= TEXT_MOST && strlen(text) == json_string_length(value) ? text : NULL;
@@ -171,7 +174,7 @@ static bool camera_of(const json_t *value, bool by_name, wire_camera *out) {
 }
 
 static void read_camera(reading *r, wire_message *m) {
-    m->camera.n = has(r, "n") ? take_count(r, "n") : 0;
+    m->camera.n = take_n(r);
     m->camera.still = take_flag(r, "still");
     if (!camera_of(r->root, true, &m->camera.to))
         refuse(r, "it has neither a name, nor eye, target and fov");
@@ -180,7 +183,7 @@ static void read_camera(reading *r, wire_message *m) {
 }
 
 static void read_jump(reading *r, wire_message *m) {
-    m->jump.n = has(r, "n") ? take_count(r, "n") : 0;
+    m->jump.n = take_n(r);
     m->jump.still = take_flag(r, "still");
     m->jump.pane = take_pane(r, 0);
     m->jump.has_place = has(r, "place");
@@ -196,12 +199,16 @@ static void read_jump(reading *r, wire_message *m) {
 }
 
 static void read_set(reading *r, wire_message *m) {
+    m->set.n = take_n(r);
     m->set.pane = m->kind == WIRE_SET && has(r, "pane") ? take_pane(r, -1) : -1;
     m->set.name = take_text(r, "name");
     m->set.value = take_text(r, "value");
 }
 
-static void read_layout(reading *r, wire_message *m) { m->layout = (wire_layout)take_name(r, "name", wire_layouts); }
+static void read_layout(reading *r, wire_message *m) {
+    m->layout.n = take_n(r);
+    m->layout.name = (wire_layout)take_name(r, "name", wire_layouts);
+}
 
 static void read_ack(reading *r, wire_message *m) {
     m->ack.pane = take_pane(r, 0);

@@ -120,10 +120,14 @@ typedef struct wire_message {
             double place[3], distance;
         } jump;
         struct {
+            uint32_t n;
             int pane; /* -1: all */
             const char *name, *value;
         } set; /* and world, which has no pane */
-        wire_layout layout;
+        struct {
+            uint32_t n;
+            wire_layout name;
+        } layout;
         struct {
             int pane;
             uint32_t n;

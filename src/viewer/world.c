@@ -179,9 +179,11 @@ void world_look(viewer_world *w) {
     pthread_mutex_unlock(&w->mutex);
 }
 
+uint64_t world_commits(const viewer_world *w) { return w->published + w->busy + (w->dirty != 0); }
+
 void world_settle(viewer_world *w) {
     pthread_mutex_lock(&w->mutex);
-    uint64_t last = w->published + w->busy + (w->dirty != 0); /* cars that drive set more meanwhile */
+    uint64_t last = world_commits(w); /* cars that drive set more meanwhile */
     while (w->loaded && !w->ended && w->published < last)
         pthread_cond_wait(&w->changed, &w->mutex);
     pthread_mutex_unlock(&w->mutex);
@@ -192,6 +194,13 @@ uint64_t world_version(viewer_world *w) {
     uint64_t version = w->version;
     pthread_mutex_unlock(&w->mutex);
     return version;
+}
+
+uint64_t world_published(viewer_world *w) {
+    pthread_mutex_lock(&w->mutex);
+    uint64_t published = w->published;
+    pthread_mutex_unlock(&w->mutex);
+    return published;
 }
 
 uint64_t world_told(viewer_world *w) {

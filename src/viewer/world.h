@@ -38,6 +38,8 @@ void world_settle(viewer_world *world);
 
 /* Counts what makes other pictures: what was set, and the cars' moves. */
 uint64_t world_version(viewer_world *world);
+/* Counts commits. A frame that begins at the `version` of world_state, or later, shows its values. */
+uint64_t world_published(viewer_world *world);
 /* Counts changes of world_state but the time of cars that drive. */
 uint64_t world_told(viewer_world *world);
 

@@ -69,6 +69,9 @@ noc_status world_begin(viewer_world *w);
 void world_finish(viewer_world *w);
 bool world_drives(const viewer_world *w);
 
+/* world.c: commits after which all that is set is in the scene. Call under the mutex. */
+uint64_t world_commits(const viewer_world *w);
+
 /* world_apply.c: stages all that is dirty, under the mutex. */
 noc_status world_stage(viewer_world *w);
 

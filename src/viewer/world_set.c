@@ -453,6 +453,7 @@ json_t *world_state(viewer_world *w) {
     json_t *state = json_object();
     json_object_set_new(state, "values", w->loaded ? values_of(w) : json_object());
     json_object_set_new(state, "idle", w->loaded ? idle_of(w) : json_object());
+    json_object_set_new(state, "version", json_integer((json_int_t)world_commits(w)));
     pthread_mutex_unlock(&w->mutex);
     return state;
 }

@@ -101,6 +101,49 @@ def test_display_keeps_the_mean(p):
     c.close()
 
 
+def test_a_picture_tells_what_it_was_made_with(p):
+    """The first picture that shows a setting by its number is of that mode, method and world."""
+    c = enter(p, 160, 90)
+    made = {}
+
+    def picture(n, pane=0):
+        """What was told of the first picture of that pane which shows message n."""
+        def wanted(m):
+            if isinstance(m, dict) and m["t"] == "stats":
+                made[m["pane"]] = m
+            return isinstance(m, Picture) and m.kind == 1 and m.pane == pane and m.input >= n
+        c.wait_for(wanted)
+        return made[pane]
+
+    steps = ("show", "illuminance"), ("method", "is"), ("show", "picture"), ("method", "headlight"), ("method", "ris")
+    set_to = {"show": "picture", "method": "ris"}
+    for n, (name, value) in enumerate(steps, 1):
+        set_to[name] = value
+        c.say("set", n=n, name=name, value=value)
+        state = said(c, "state", lambda m: m["input"] >= n)
+        assert state["panes"][0]["values"][name] == value and not state["panes"][0]["failed"]
+        told = picture(n)
+        assert {name: told[name] for name in set_to} == set_to, (told, set_to)
+    c.say("set", n=10, name="show", value="no-such")  # what is refused is numbered, too, and a picture comes
+    state = said(c, "state", lambda m: m["input"] == 10)
+    assert picture(10)["show"] == state["panes"][0]["values"]["show"] == "picture"
+    was = made[0]["world"]
+    c.say("world", n=11, name="group.lamps", value="0.5,2200K")
+    version = said(c, "state", lambda m: m["input"] == 11)["world"]["version"]
+    assert version > was
+    while made[0]["world"] < version:
+        assert made[0]["world"] >= was
+        picture(11)
+    c.say("world", n=12, name="group.lamps", value="on,own")
+    c.say("layout", n=13, name="difference")
+    version = said(c, "state", lambda m: m["input"] == 13 and len(m["panes"]) == 3)["world"]["version"]
+    while picture(13, 2)["world"] < version:
+        pass
+    assert "show" not in made[2] and "method" not in made[2], made[2]
+    assert (made[1]["show"], made[1]["method"]) == ("picture", "reference"), made[1]
+    c.close()
+
+
 def test_layouts(p):
     c = enter(p, 160, 90)
     for name, panes in ("divider", 2), ("methods", 6), ("difference", 3), ("single", 1):

@@ -121,6 +121,25 @@ static void test_camera(void **state) {
     assert_false(reads("{\"t\":\"camera\",\"eye\":[1,2,3],\"target\":[4,5,6],\"fov\":0}"));
 }
 
+static void test_settings(void **state) {
+    (void)state;
+    wire_message m = read_one("{\"t\":\"set\",\"n\":9,\"name\":\"show\",\"value\":\"depth\"}");
+    assert_int_equal(m.set.n, 9);
+    assert_int_equal(m.set.pane, -1);
+    wire_free(&m);
+    m = read_one("{\"t\":\"world\",\"name\":\"hour\",\"value\":\"3\"}");
+    assert_int_equal(m.set.n, 0);
+    wire_free(&m);
+    m = read_one("{\"t\":\"layout\",\"n\":11,\"name\":\"methods\"}");
+    assert_int_equal(m.layout.n, 11);
+    assert_int_equal(m.layout.name, WIRE_METHODS);
+    wire_free(&m);
+    assert_refused("{\"t\":\"layout\",\"n\":-1,\"name\":\"single\"}",
+                   "layout: n is no whole number of 0 to 1000000000");
+    assert_refused("{\"t\":\"set\",\"n\":\"9\",\"name\":\"show\",\"value\":\"depth\"}",
+                   "set: n is no whole number of 0 to 1000000000");
+}
+
 static void test_questions(void **state) {
     (void)state;
     wire_message m = read_one("{\"t\":\"ask\",\"id\":3,\"what\":\"region\",\"polygon\":[[0,0],[1,0],[0,1]]}");
@@ -279,6 +298,7 @@ int main(void) {
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_input),
         cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_settings),
         cmocka_unit_test(test_questions),
         cmocka_unit_test(test_inputs_become_one),
         cmocka_unit_test(test_the_newest_camera_counts),
