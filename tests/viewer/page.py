@@ -407,9 +407,11 @@ class Page(Opened):
         status, said = self.served.end(wait=30 * browser.scale())
         assert status in (0, 130), (status, said)
         page.wait("!document.getElementById('loading').hidden")
+        assert page.evaluate("document.querySelector('.pane.waiting .waits').textContent") == 'waiting for the picture'
         self.served = wire.Program(*CITY, port=self.served.port)
         page.wait("document.getElementById('loading').hidden", 60)
         page.wait(f"Math.hypot(...viewer.camera.eye.map((x, i) => x - {seen['eye']}[i])) < 0.01")
+        page.wait("document.querySelectorAll('.pane.waiting').length === 0")
         page.errors = [one for one in page.errors if 'WebSocket' not in one]  # what the browser says of tries
 
 

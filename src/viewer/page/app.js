@@ -1,5 +1,5 @@
 // app.js: what the page knows: the schema, the state that the program last told, figures of the newest pictures. All
-// panels read it here and hear of changes: welcome, state, stats, highlight, editing, picture.
+// panels read it here and hear of changes: welcome, state, pressed, stats, waiting, highlight, editing, picture.
 import { fits } from './connection.js';
 import { Emitter } from './dom.js';
 
@@ -11,7 +11,13 @@ export class App extends Emitter {
     stats = []; // of each pane, the newest
     editing = 0; // the pane that controls act on; -1: all
     highlighted = []; // rows of answers: { light, place }
-    sent = 0; // inputs
+    sent = 0; // messages that pictures answer: inputs, settings, layouts
+    waiting = new Set(); // panes whose picture is not yet what is pressed
+    #pressed = new Map(); // pane, -1: all -> number of the newest setting that was pressed, not pulled
+    #shows = []; // modes that were pressed, and that no state answers yet: { n, pane, value }
+    #edited = 0; // number of a pressed setting of the world whose version no state has told yet
+    #version = 0; // of the world that pictures must show
+    #lit = 'ris'; // the method before the headlight
     #times = new Map(); // number of an input -> when it was sent, ms
     #asked = 0;
     #questions = new Map();
@@ -42,17 +48,67 @@ export class App extends Emitter {
         );
     }
 
-    set(name, value, pane = this.editing) {
-        this.#say('set', { pane, name, value: String(value) });
+    // pulled: by a slider, whose pictures follow it; else the picture waits for what is set.
+    set(name, value, pane = this.editing, pulled = false) {
+        const n = this.#say('set', { pane, name, value: String(value) });
+        if (n && name === 'show') this.#shows.push({ n, pane, value });
+        if (n && !pulled) this.#press(n, pane);
     }
 
-    setWorld(name, value) {
-        this.#say('world', { name, value: String(value) });
+    setWorld(name, value, pulled = false) {
+        const n = this.#say('world', { name, value: String(value) });
+        if (!n || pulled) return;
+        this.#edited = n;
+        this.#press(n, -1);
     }
 
+    // To the method that shows surfaces alone, and back to the one before.
+    headlight(on = this.values().method !== 'headlight') {
+        const { method } = this.values();
+        if (on === (method === 'headlight')) return;
+        if (on) this.#lit = method;
+        this.set('method', on ? 'headlight' : this.#lit);
+    }
+
+    setLayout(name) {
+        const n = ++this.sent;
+        this.connection.send('layout', { name, n });
+        this.#press(n, -1);
+    }
+
+    // Returns the message's number; 0: it was not sent.
     #say(t, values) {
-        if (fits(values.value)) this.connection.send(t, values);
-        else this.emit('note', 'error', `${values.name}: that text is too long.`);
+        if (!fits(values.value)) {
+            this.emit('note', 'error', `${values.name}: that text is too long.`);
+            return 0;
+        }
+        const n = ++this.sent;
+        this.connection.send(t, { ...values, n });
+        return n;
+    }
+
+    #press(n, pane) {
+        this.#pressed.set(this.#together ? -1 : pane, n);
+        this.emit('pressed');
+    }
+
+    // Panes of a difference show one kind of numbers.
+    get #together() {
+        return this.state?.layout === 'difference';
+    }
+
+    // The mode of a pane that is pressed, whether the program has answered it or not.
+    show(pane = Math.max(this.editing, 0)) {
+        const newest = this.#shows.findLast((one) => one.pane < 0 || one.pane === pane || this.#together);
+        return newest?.value ?? this.values(pane).show ?? 'picture';
+    }
+
+    // Returns true if a picture is of all that is pressed. made: { input, world, show, method } that it was made with.
+    agrees(pane, made) {
+        const { show, method } = made;
+        const pressed = Math.max(this.#pressed.get(-1) ?? 0, this.#pressed.get(pane) ?? 0);
+        const own = show === undefined || (show === this.show(pane) && method === this.values(pane).method);
+        return own && made.input >= pressed && !this.#edited && made.world >= this.#version;
     }
 
     edit(pane) {
@@ -63,11 +119,6 @@ export class App extends Emitter {
 
     option(name) {
         return this.schema.look.find((one) => one.name === name) ?? this.schema.world.find((one) => one.name === name);
-    }
-
-    mode(pane = Math.max(this.editing, 0)) {
-        const show = this.values(pane).show ?? 'picture';
-        return this.schema.modes.find((one) => one.name === show) ?? { name: show, text: '', unit: '' };
     }
 
     // EV100 of the newest picture, of the pane that is edited; null where it shows numbers.
@@ -150,6 +201,9 @@ export class App extends Emitter {
         this.stats = [];
         this.#times.clear();
         this.state = null;
+        this.#pressed.clear(); // what was lost with a connection is answered by none
+        this.#shows = [];
+        this.#edited = this.#version = 0;
         this.emit('welcome', message);
         if (message.state) this.#settle(message.state);
         this.emit('ready');
@@ -157,6 +211,11 @@ export class App extends Emitter {
 
     #settle(state) {
         this.state = state;
+        this.#shows = this.#shows.filter(({ n }) => n > state.input);
+        if (this.#edited && state.input >= this.#edited) {
+            this.#edited = 0;
+            this.#version = state.world.version;
+        }
         const panes = state.panes?.length ?? 1;
         this.stats.length = Math.min(this.stats.length, panes);
         if (this.editing >= panes) this.editing = 0;

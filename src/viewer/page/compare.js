@@ -13,7 +13,7 @@ export class Layouts {
     constructor(root, app, panes) {
         this.app = app;
         this.panes = panes;
-        this.choice = new Choice(root, (name) => this.set(name));
+        this.choice = new Choice(root, (name) => app.setLayout(name));
         this.choice.fill(LAYOUTS.map(([name, text, title]) => ({ name, text, title })));
         this.divider = this.#divider();
         this.hold = button('Hold A', () => panes.hold(!panes.held), {
@@ -28,10 +28,6 @@ export class Layouts {
         app.on('state', (state) => this.#show(state));
         panes.root.addEventListener('click', (event) => this.#edit(event));
         this.#place(0.5);
-    }
-
-    set(name) {
-        this.app.connection.send('layout', { name });
     }
 
     #show(state) {

@@ -57,7 +57,7 @@ function numeric(option, change, labels) {
     slider.addEventListener('input', () => {
         box.value = say(option, clamp(map.from(slider.value / STEPS), option.min ?? -Infinity, option.max ?? Infinity));
         slider.setAttribute('aria-valuetext', `${box.value} ${option.unit ?? ''}`);
-        change(box.value);
+        change(box.value, true);
     });
     const show = (text) => {
         box.value = Number.isFinite(Number(text)) ? Number(Number(text).toPrecision(6)) : '';
@@ -90,14 +90,14 @@ function text(option, change, labels) {
 }
 
 function colour(option, change, labels) {
-    const box = el('input', { type: 'color', ...labels, on: { input: () => change(box.value) } });
+    const box = el('input', { type: 'color', ...labels, on: { input: () => change(box.value, true) } });
     return { parts: [box], show: (value) => (box.value = value || '#808080') };
 }
 
 // A number, or auto, which the program finds: exposure. By hand it begins at what was found.
 function automatic(option, change, labels) {
     const row = { ...option, kind: 'real', min: -10, max: 20, value: '3' };
-    const numbers = numeric(row, (value) => change(value), { 'aria-label': `${option.name}, by hand` });
+    const numbers = numeric(row, change, { 'aria-label': `${option.name}, by hand` });
     const told = () => change(box.checked ? 'auto' : String(Number((option.found() ?? 3).toFixed(2))));
     const box = el('input', { type: 'checkbox', role: 'switch', ...labels, on: { change: told } });
     const show = (value) => {
@@ -147,14 +147,13 @@ export function toGroup({ on, scale, colour }) {
 
 function group(option, change, labels) {
     let words = groupWords(option.value);
-    const told = () => change(toGroup(words));
+    const told = (pulled) => change(toGroup(words), pulled);
     const name = option.name.replace(/^group\./, '');
-    const on = bool(option, (value) => ((words.on = value === 'on'), told()), labels);
+    const on = bool(option, (value) => ((words.on = value === 'on'), told(false)), labels);
     const brightness = { name: `${name}, brightness`, kind: 'real', min: 0, max: 4, value: '1', unit: '×' };
-    const dim = numeric(brightness, (value) => ((words.scale = Number(value)), (words.on = words.scale > 0), told()), {
-        'aria-label': `${name}, brightness`,
-    });
-    const dye = (value) => ((words.colour = value), told(), mark());
+    const scaled = (value, pulled) => ((words.scale = Number(value)), (words.on = words.scale > 0), told(pulled));
+    const dim = numeric(brightness, scaled, { 'aria-label': `${name}, brightness` });
+    const dye = (value) => ((words.colour = value), told(false), mark());
     const buttons = LAMPS.map(([value, label, title]) => button(label, () => dye(value), { title, data: { value } }));
     const free = el('input', {
         type: 'color',
@@ -179,7 +178,7 @@ const LABELS = { 'window-lit': 'share of windows lit at 21 h' };
 
 const KINDS = { bool, switch: choice, choice, int: numeric, real: numeric, text, colour, group };
 
-// root: the row. change(text) is called at most once an animation frame.
+// root: the row. change(text, pulled) is called at most once an animation frame; pulled: by a slider.
 export class Control {
     #changed = -Infinity; // by hand, ms
     #frame = 0;
@@ -193,7 +192,7 @@ export class Control {
         const labels = { id, 'aria-describedby': `${id}-why` };
         this.made = (option.name === 'exposure' ? automatic : (KINDS[option.kind] ?? text))(
             option,
-            (value) => this.#say(value),
+            (value, pulled) => this.#say(value, false, pulled),
             labels,
         );
         this.why = el('span', { class: 'why', id: `${id}-why` });
@@ -246,14 +245,14 @@ export class Control {
         this.shared.hidden = !shared;
     }
 
-    #say(value, settled = false) {
+    #say(value, settled = false, pulled = false) {
         this.value = value;
         this.#changed = settled ? -Infinity : performance.now();
-        this.#next = value;
+        this.#next = [value, pulled];
         if (!this.#frame)
             this.#frame = requestAnimationFrame(() => {
                 this.#frame = 0;
-                this.change(this.#next);
+                this.change(...this.#next);
             });
     }
 }

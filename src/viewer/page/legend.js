@@ -41,13 +41,21 @@ export class Legend {
         this.#movable();
         app.on('stats', () => this.show());
         app.on('state', () => this.show());
+        app.on('waiting', () => this.#wait());
+    }
+
+    // That of a picture which is not what is pressed is dimmed with it, and sets nothing.
+    #wait() {
+        const waits = this.app.waiting.has(this.pane);
+        this.root.classList.toggle('waiting', waits);
+        this.root.inert = waits;
     }
 
     // The pane that is edited, where it shows numbers; -1: none has a legend. A difference has one of its own.
     get pane() {
         const edited = Math.max(this.app.editing, 0);
         const pane = this.beside && edited === 2 ? 0 : edited;
-        return this.app.mode(pane).name === 'picture' ? -1 : pane;
+        return this.app.stats[pane]?.show === 'picture' ? -1 : pane;
     }
 
     get beside() {
@@ -66,15 +74,15 @@ export class Legend {
 
     show() {
         const { legend, fixed } = this;
-        const mode = this.app.mode();
+        const mode = this.app.stats[this.pane]?.show;
         const values = this.app.values();
         this.root.hidden = !legend;
         if (this.root.hidden) return;
-        const text = JSON.stringify([legend, mode.name, this.beside, this.pane, values.isolines, values['show-range']]);
+        const text = JSON.stringify([legend, mode, this.beside, this.pane, values.isolines, values['show-range']]);
         if (text === this.#drawn) return;
         this.#drawn = text;
         const unit = legend.unit && !legend.title.includes('[') ? ` [${legend.unit}]` : '';
-        this.title.textContent = (legend.title || mode.name) + unit;
+        this.title.textContent = (legend.title || mode) + unit;
         const numbers = Boolean(legend.colours);
         this.scale.hidden = !numbers;
         this.tools.hidden = !numbers || fixed;
@@ -86,7 +94,7 @@ export class Legend {
                 ...(legend.labels ?? []).map(({ text, number: label, colour }) => {
                     const swatch = el('span', { class: 'swatch' });
                     swatch.style.background = colour;
-                    return el('li', {}, swatch, mode.name === 'group' ? this.#group(label) : text);
+                    return el('li', {}, swatch, mode === 'group' ? this.#group(label) : text);
                 }),
             );
         this.#place();
@@ -280,7 +288,7 @@ export class Legend {
     #range(low, high) {
         if (!(high > low)) return;
         const say = (value) => String(Number(value.toPrecision(4)));
-        this.app.set('show-range', `${say(low)},${say(high)}`);
+        this.app.set('show-range', `${say(low)},${say(high)}`, this.app.editing, true);
     }
 
     #toggle() {

@@ -92,7 +92,7 @@ function restoreLook(app, pane, own) {
 export function restore(app, told, world) {
     const { connection, schema } = app;
     const view = sane(told, schema);
-    if (view.layout && view.layout !== app.state?.layout) connection.send('layout', { name: view.layout });
+    if (view.layout && view.layout !== app.state?.layout) app.setLayout(view.layout);
     if (view.camera) app.goTo(view.camera);
     if (view.navigate) connection.send('navigate', view.navigate); // there: here may be no place to stand
     view.panes.forEach((values, pane) => restoreLook(app, pane, values));

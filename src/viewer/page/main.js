@@ -116,8 +116,8 @@ const ACTS = [
     ['Enter', 'Enter', 'who lights what is under the pointer?', () => ask.pick(input.target())],
     ['g', 'G', 'go to what is under the pointer', () => app.jump(input.target())],
     ['n', 'N', 'next way of moving', () => connection.send('navigate', { mode: next(moving) })],
-    ['y', 'Y', 'next layout', () => layouts.set(next(layouts.choice))],
-    ['z', 'Z', 'headlight: the city without its lights, and back', () => headlight()],
+    ['y', 'Y', 'next layout', () => app.setLayout(next(layouts.choice))],
+    ['z', 'Z', 'headlight: the city without its lights, and back', () => app.headlight()],
     ['v', 'V', 'the mouse looks, until Escape', () => input.lock()],
     ['r', 'R', 'rectangle in the picture', () => ask.rectangle()],
     ['h', 'H', 'hide all but the picture', () => document.body.classList.toggle('bare')],
@@ -137,14 +137,6 @@ const told = [
     ['Escape', 'close, let go'],
 ];
 const showHelp = () => help($('help'), told);
-
-// To the method that shows surfaces alone, and back to the one before.
-let lit = 'ris';
-function headlight() {
-    const method = app.values().method;
-    if (method !== 'headlight') lit = method;
-    app.set('method', method === 'headlight' ? lit : 'headlight');
-}
 
 // Escape, wherever the focus is: what was begun is left, then what is open is closed.
 function letGo() {

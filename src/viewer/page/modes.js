@@ -6,6 +6,11 @@ const FIRST = [
     ...['picture', 'luminance', 'illuminance', 'influential', 'influential-share', 'runner-up', 'runner-up-share'],
     ...['group', 'placed', 'lights'],
 ];
+
+// A mode in plain words, of a label.
+const PLAIN = { picture: 'the picture', influential: 'who lights it' };
+export const plain = (name) => PLAIN[name] ?? name.replaceAll('-', ' ');
+
 const order = (modes) => {
     const rank = ({ name }) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
     return [...modes].sort((a, b) => rank(a) - rank(b));
@@ -14,12 +19,12 @@ const order = (modes) => {
 export class Modes {
     constructor(bar, app) {
         this.app = app;
-        this.bar = new Choice(bar, (name) => app.set('show', name));
+        this.bar = new Choice(bar, (name) => this.#press(name));
         app.on('welcome', () => {
             const modes = order(app.schema.modes);
             this.bar.fill(modes.map((mode) => ({ name: mode.name, text: mode.name, title: mode.text })));
         });
-        app.on('state', () => this.bar.set(app.values().show ?? 'picture'));
+        for (const kind of ['state', 'pressed']) app.on(kind, () => this.bar.set(app.show()));
         document.addEventListener('keydown', (event) => this.#key(event));
     }
 
@@ -34,6 +39,12 @@ export class Modes {
             : /^[1-9]$/.test(event.key)
               ? names[event.key - 1]
               : null;
-        if (next) this.app.set('show', next);
+        if (next) this.#press(next);
+    }
+
+    // Numbers are of the city's lights, of which a headlight has none.
+    #press(name) {
+        if (name !== 'picture') this.app.headlight(false);
+        this.app.set('show', name);
     }
 }

@@ -193,15 +193,15 @@ export class Settings {
                 groups.get(option.group).push([option, set]);
             }
         };
-        take(look, (name, value) => this.app.set(name, value));
-        take(world, (name, value) => this.app.setWorld(name, value));
+        take(look, (name, value, pulled) => this.app.set(name, value, this.app.editing, pulled));
+        take(world, (name, value, pulled) => this.app.setWorld(name, value, pulled));
         const open = new Set(this.#sections.filter(({ root }) => root.open).map(({ name }) => name));
         if (!open.size) open.add([...groups.keys()][0]);
         this.#controls.clear();
         this.#sections = [...groups].map(([name, options]) => {
             const controls = options.map(([option, set]) => {
                 const found = { ...option, found: () => this.app.ev100 };
-                const control = new Control(found, (value) => set(option.name, value));
+                const control = new Control(found, (value, pulled) => set(option.name, value, pulled));
                 this.#controls.set(option.name, control);
                 return control;
             });

@@ -1,6 +1,7 @@
 // panes.js: the pictures: one to six panes, each a canvas, with a second one above it for marks.
 import { el, clamp, number } from './dom.js';
 import { project } from './camera.js';
+import { plain } from './modes.js';
 
 const MOST_PIXELS = 1920 * 1080; // of all panes together, asked for
 const LEAST = 16; // frames of both under which figures of a difference are those of noise
@@ -16,11 +17,13 @@ export class Panes {
         this.layout = 'single';
         this.split = 0.5; // of the divider
         this.share = 1; // of the window's resolution
-        this.held = null; // { values, camera, frozen }: A beside a divider keeps the scene's settings that it had
+        this.held = null; // { values, of, frozen }: A beside a divider keeps the scene's settings that it had
         this.aspect = 0; // that pictures have at least; 0: that of their pane
         app.on('picture', (picture) => this.#take(picture));
         app.on('state', (state) => this.#arrange(state));
         app.on('stats', () => this.#captions());
+        app.on('pressed', () => this.#agree());
+        app.connection.on('closed', () => this.#lost());
         app.on('highlight', () => this.draw());
         document.addEventListener('visibilitychange', () => this.#visible());
         new ResizeObserver(() => this.#sized()).observe(root);
@@ -85,9 +88,9 @@ export class Panes {
     }
 
     // While A is held its picture stays as it is whenever the scene has other settings than now. It goes on where the
-    // camera moves, for what was held is of another place then.
+    // camera moves or A shows another mode, for what was held is another picture then.
     hold(on) {
-        this.held = on ? { values: this.#settings(), camera: null, frozen: false } : null;
+        this.held = on ? { values: this.#settings(), of: null, frozen: false } : null;
         this.#freeze();
         this.app.emit('held', this.held !== null);
     }
@@ -99,18 +102,26 @@ export class Panes {
     #freeze() {
         const { held } = this;
         const frozen = held !== null && this.#settings() !== held.values;
-        if (frozen && !held.frozen) held.camera = JSON.stringify(this.camera(0));
+        if (frozen && !held.frozen) held.of = this.#shows();
         if (held) held.frozen = frozen;
         this.panes[0].root.classList.toggle('held', frozen);
         this.#captions();
+        this.#agree();
+    }
+
+    // What the newest picture of A shows, by whatever lamps.
+    #shows() {
+        return JSON.stringify([this.camera(0), this.app.stats[0]?.show]);
     }
 
     // Is a picture of A one that is not shown, because A is held?
     #kept(picture) {
         if (picture.pane !== 0 || !this.held?.frozen) return false;
-        if (JSON.stringify(this.camera(0)) === this.held.camera) return true;
+        if (this.#shows() === this.held.of) return true;
+        const moved = JSON.stringify(this.camera(0)) !== JSON.stringify(JSON.parse(this.held.of)[0]);
         this.hold(false);
-        this.app.emit('note', 'info', 'The camera has moved: A is not held any more.');
+        const why = moved ? 'The camera has moved' : 'A shows another mode';
+        this.app.emit('note', 'info', `${why}: A is not held any more.`);
         return false;
     }
 
@@ -151,9 +162,11 @@ export class Panes {
 
     // Pictures of another layout would stand under names that are not theirs.
     #blank() {
-        for (const { canvas, context } of this.panes.slice(1)) {
+        for (const pane of this.panes.slice(1)) {
+            const { canvas, context } = pane;
             context.clearRect(0, 0, canvas.width, canvas.height);
             delete canvas.dataset.n;
+            pane.made = null;
         }
     }
 
@@ -161,14 +174,20 @@ export class Panes {
         const canvas = el('canvas', { class: 'picture', width: 16, height: 9, role: 'img', 'aria-label': 'Picture' });
         const overlay = el('canvas', { class: 'overlay', 'aria-hidden': 'true' });
         const caption = el('div', { class: 'caption' });
-        const root = el('div', { class: 'pane', data: { pane: this.panes.length } }, canvas, overlay, caption);
+        const waits = el('p', { class: 'waits', role: this.panes.length ? null : 'status' });
+        const lit = el('p', { class: 'lit', text: 'headlight: lit from the camera', hidden: true });
+        const says = el('div', { class: 'says' }, waits, lit);
+        const root = el('div', { class: 'pane', data: { pane: this.panes.length } }, canvas, overlay, caption, says);
         this.root.append(root);
         this.panes.push({
             root,
             canvas,
             overlay,
             caption,
+            waits,
+            lit,
             context: canvas.getContext('2d'),
+            made: null, // what its picture was made with (App.agrees); null: none of this connection is there
             waiting: null,
             size: null,
         });
@@ -213,8 +232,36 @@ export class Panes {
         ];
     }
 
+    // Dims pictures that are not what is pressed, and says what is waited for. What states and pictures tell decides
+    // that, and no clock.
+    #agree() {
+        const { app } = this;
+        app.waiting.clear();
+        this.panes.forEach(({ made, root, canvas, waits, lit }, index) => {
+            const kept = made && index === 0 && this.held?.frozen; // by other lamps, as it is meant to be
+            const agrees = kept ? made.show === app.show(0) : made && app.agrees(index, made);
+            if (app.state && !agrees) app.waiting.add(index);
+            const waiting = app.waiting.has(index);
+            const { failed, caption } = this.states[index] ?? {};
+            const name = caption === 'difference' ? 'the difference' : plain(app.show(index));
+            waits.textContent = !waiting ? '' : failed ? `${name}: its frame failed` : `waiting for ${name}`;
+            lit.hidden = made?.method !== 'headlight' || made.show !== 'picture';
+            root.classList.toggle('waiting', waiting);
+            canvas.setAttribute('aria-label', made?.show ? plain(made.show) : 'Picture');
+            canvas.setAttribute('aria-busy', waiting);
+        });
+        app.emit('waiting');
+    }
+
+    // Pictures of a connection that broke are no answer to what is set in the next one.
+    #lost() {
+        for (const pane of this.panes) pane.made = null;
+        this.#agree();
+    }
+
     async #take(picture) {
         const pane = this.panes[picture.pane];
+        const made = { ...this.app.stats[picture.pane], input: picture.input };
         if (!pane) return this.#acknowledge(picture); // of a layout that was left
         if (this.#kept(picture)) {
             this.app.shown(picture.input);
@@ -235,7 +282,9 @@ export class Panes {
         canvas.dataset.frames = picture.frames;
         canvas.dataset.input = picture.input;
         this.app.shown(picture.input);
+        pane.made = made;
         pane.size = [picture.width, picture.height];
+        this.#agree();
         this.draw();
         this.app.emit('shown', picture);
         this.#acknowledge(picture);
