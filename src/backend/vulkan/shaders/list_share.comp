@@ -203,7 +203,7 @@ void main() {
             bright_[my_block][my_lane] = share_pixel(p, s, far, near, rows);
         rest &= ~f.pixels;
     }
-    if (inside && my_lane == 0u) {
+    if (inside && my_lane == 0u && (HERE.list_flags & LIST_LEARNS) != 0u) {
         precise float sum = (quarter_bright(0u) + quarter_bright(2u)) + (quarter_bright(1u) + quarter_bright(3u));
         HERE.block_bright.at[p.block] = sum;
     }
