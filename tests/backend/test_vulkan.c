@@ -239,6 +239,7 @@ static void views_have_the_same_bits(void **state) {
         { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER, false, 0 },
         { "ris, light-bvh, map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, true, 0 },
         { "ris, lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, 0 },
+        { "ris, lists, no rays", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, 0 },
         { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false, 0 },
         { "restir, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false, 0 },
         { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, OF_RESERVOIRS },
@@ -261,6 +262,7 @@ static void views_have_the_same_bits(void **state) {
         noc_render_params p = all_kinds_params(rows[row].method, rows[row].map);
         p.candidates = rows[row].candidates;
         p.rays = 20;
+        p.final_ray = !strstr(rows[row].name, "no rays");
         bool finds = p.candidates == NOC_CANDIDATES_LISTS || p.candidates == NOC_CANDIDATES_INFLUENCE;
         p.aovs = (ALL_VIEWS & ~rows[row].without) | (finds ? AOV(LIGHTS) : 0);
         for (int f = 0; f < 4; f++) {

@@ -33,5 +33,5 @@ void main() {
             pixel_store(ray_field(k, RAY_BRINGS + c), r.brings[c]);
     }
     p.slot = pixel_;
-    ray_put(p, k, r.w > 0.0, way.o, way.d);
+    ray_put(p, k, r.w > 0.0 && (FRAME.flags & FRAME_FINAL_RAY) != 0u, way.o, way.d);
 }
