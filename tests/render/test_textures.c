@@ -22,8 +22,9 @@ static int four_colours(noc_scene *scene, int side) {
     return noc_scene_add_texture(scene, &(noc_texture){ side, side, rgb, .linear = true, .wrap = NOC_WRAP_CLAMP });
 }
 
-/* A wall of 4 m x 4 m at y = 0 that is seen from -y; as_model: through an instance that is twice as large. */
-static void add_wall(noc_scene *scene, int texture, bool as_model, double scale) {
+/* A wall of 4 m x 4 m at y = 0 that is seen from -y; placed: it has places in the texture. as_model: through
+ * an instance that is twice as large. */
+static void add_wall(noc_scene *scene, int texture, bool placed, bool as_model, double scale) {
     noc_material m = { .albedo = { 1, 1, 1 }, .roughness = 1, .cls = NOC_CLASS_WALL, .texture = texture };
     double s = scale * (as_model ? 1 : 2);
     const double xyz[] = { -s, 0, -s, s, 0, -s, s, 0, s, -s, 0, s };
@@ -34,7 +35,7 @@ static void add_wall(noc_scene *scene, int texture, bool as_model, double scale)
                       .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
                       .material = noc_scene_add_material(scene, &m),
                       .model = as_model ? noc_scene_add_model(scene, "wall") : 0,
-                      .uv = uv };
+                      .uv = placed ? uv : NULL };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
     if (as_model) {
         noc_instance in = { mesh.model, { 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0 } };
@@ -42,14 +43,16 @@ static void add_wall(noc_scene *scene, int texture, bool as_model, double scale)
     }
 }
 
-static noc_scene *wall_scene(bool as_model, double scale) {
+static noc_scene *lit_wall(bool placed, bool as_model, double scale) {
     noc_scene *scene = noc_scene_create(NULL);
-    add_wall(scene, four_colours(scene, 32), as_model, scale);
+    add_wall(scene, four_colours(scene, 32), placed, as_model, scale);
     noc_light far = { .kind = NOC_LIGHT_POINT, .position = { 0, -1000, 0 }, .emission = { 1e7f, 1e7f, 1e7f } };
     assert_true(noc_scene_add_light(scene, &far) >= 0);
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
     return scene;
 }
+
+static noc_scene *wall_scene(bool as_model, double scale) { return lit_wall(true, as_model, scale); }
 
 static noc_image *picture(const noc_scene *scene, int threads, noc_isa isa, double distance, noc_method method) {
     noc_view *view = own_view(scene, threads, NULL);
@@ -92,6 +95,17 @@ static void test_way_up(void **state) {
         noc_image_destroy(image);
         noc_scene_destroy(scene);
     }
+}
+
+/* A texture that no mesh has a place in is not seen. */
+static void test_no_places(void **state) {
+    (void)state;
+    noc_scene *scene = lit_wall(false, false, 1);
+    noc_image *image = picture(scene, 1, NOC_ISA_AUTO, 6, NOC_METHOD_RIS);
+    assert_colour(pixel(image, 22, 14), 1, 1, 1);
+    assert_colour(pixel(image, 42, 34), 1, 1, 1);
+    noc_image_destroy(image);
+    noc_scene_destroy(scene);
 }
 
 /* Of a wall that is less than a pixel's width the mean is seen. */
@@ -159,6 +173,7 @@ static void test_edit(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_way_up),
+        cmocka_unit_test(test_no_places),
         cmocka_unit_test(test_far),
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_edit),

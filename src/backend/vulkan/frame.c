@@ -159,7 +159,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .light_colours = v->views.of.light_colours,
         .by_power = frame->plan->candidates == NOC_CANDIDATES_POWER,
         .light_count = (uint32_t)v->scene->lights.len,
-        .textured = v->scene->texels.len > 0,
+        .textured = v->scene->texels.len > 0 && v->scene->uv.len > 0,
         .instanced = b->instance.bytes > 0,
         .moved = b->instance.bytes > 0 && noc_past_other_shape(&v->past, v->scene),
         .blocks_y = b->blocks_y,

@@ -80,7 +80,7 @@ struct vk_instance_record {
     ADDRESS(Floats, emitter_labels) /* of each light */                                                                \
     ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
     WORD(uint32_t, light_count)                                                                                        \
-    WORD(uint32_t, textured)  /* 1: materials have textures */                                                         \
+    WORD(uint32_t, textured)  /* 1: materials have textures, and meshes places in them */                             \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
     WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
     WORD(uint32_t, slots)     /* pixels of the blocks whose rays are kept at once: rays of one slot */                 \
