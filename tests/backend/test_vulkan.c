@@ -1,6 +1,6 @@
 /* The Vulkan backend beside the CPU's, on a device that traces rays. */
 #include "all_kinds.h"
-#include "vulkan_view.h"
+#include "same_frames.h"
 
 #include <nocturne/nocturne.h>
 
@@ -12,30 +12,6 @@ static noc_scene *builtin(const char *name) {
     assert_int_equal(noc_scene_add_builtin(scene, name, &params), NOC_OK);
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
     return scene;
-}
-
-/* Renders a frame on both machines; what is between rays has the same bits in every buffer. */
-static void expect_same_frame(twins *t, const noc_camera *camera, const noc_render_params *p, const char *name) {
-    assert_int_equal(noc_view_render(t->cpu, camera, p, NULL), NOC_OK);
-    assert_int_equal(noc_view_render(t->gpu, camera, p, NULL), NOC_OK);
-    const frame_buffers *c = &cpu_of(t)->b;
-    const vk_picture *g = &gpu_of(t)->b;
-    bool chooses = p->method != NOC_METHOD_HEADLIGHT && p->method != NOC_METHOD_REFERENCE;
-    int set = cpu_of(t)->shaded_set;
-    size_t surfaces = differing(t, c->g[t->cpu->history.gbuffer], &g->surfaces[t->gpu->history.gbuffer], 10);
-    size_t reservoirs = chooses ? differing(t, c->r[set], &g->reservoirs[set], 6) : 0;
-    size_t colour = differing(t, c->colour, &g->colour, 3), picture = differing(t, c->picture, &g->picture, 3);
-    if (surfaces || reservoirs || colour || picture)
-        fail_msg("%s, frame %u: words that differ: surfaces %zu, reservoirs %zu, colour %zu, picture %zu", name,
-                 t->cpu->history.index, surfaces, reservoirs, colour, picture);
-}
-
-static void expect_same_bits(twins *t, const noc_camera *camera, const noc_render_params *p, int frames,
-                             const char *name) {
-    noc_view_reset(t->cpu);
-    noc_view_reset(t->gpu);
-    for (int f = 0; f < frames; f++)
-        expect_same_frame(t, camera, p, name);
 }
 
 static void plans_have_the_same_bits(void **state) {
@@ -180,28 +156,6 @@ enum {
     OF_SURFACES = AOV(DEPTH) | AOV(NORMAL) | AOV(CLASS) | AOV(OBJECT) | AOV(MOTION),
     ALL_VIEWS = ((1u << NOC_AOV_COUNT) - 1) & ~AOV(LIGHTS), /* which lists and influence have */
 };
-
-/* Of every view that the last frames kept; returns those that say something, bits 1 << aov. */
-static uint32_t expect_same_views(twins *t, uint32_t aovs, const char *name) {
-    uint32_t told = 0;
-    for (noc_aov aov = 0; aov < NOC_AOV_COUNT; aov++) {
-        if (!(aovs >> aov & 1))
-            continue;
-        noc_channel *a = noc_view_aov(t->cpu, aov), *b = noc_view_aov(t->gpu, aov);
-        assert_true(a && b);
-        size_t n = (size_t)a->width * (size_t)a->height * (size_t)a->components, off = 0;
-        for (size_t i = 0; i < n; i++) {
-            off += memcmp(&a->value[i], &b->value[i], sizeof(float)) != 0;
-            told |= (uint32_t)(a->value[i] > 0) << aov;
-        }
-        if (off)
-            fail_msg("%s, frame %u: view %s differs in %zu of %zu numbers", name, t->cpu->history.index,
-                     noc_aov_name(aov), off, n);
-        noc_channel_destroy(a);
-        noc_channel_destroy(b);
-    }
-    return told;
-}
 
 /* Rows of the last frame, a plane after the other. */
 enum { PLANES = 14 };
