@@ -39,8 +39,51 @@ static inline noc_image *bright_map(void) {
     return map;
 }
 
+/* A pane of w x h metres in the x-z plane, or in the x-y plane, with `across` times the image; texture 0: none. */
+static inline int add_pane(noc_scene *scene, float transmittance, int texture, int model, const double at[3], double w,
+                           double h, bool flat) {
+    noc_material m = { .albedo = { 0.3f, 0.5f, 0.4f },
+                       .roughness = 0.5f,
+                       .f0 = 0.04f,
+                       .transmittance = transmittance,
+                       .texture = texture,
+                       .cutout = texture != 0 };
+    const double x = at[0], y = at[1], z = at[2], dy = flat ? h : 0, dz = flat ? 0 : h;
+    const double xyz[] = { x, y, z, x + w, y, z, x + w, y + dy, z + dz, x, y + dy, z + dz };
+    const float uv[] = { -0.3f, 0, 2, 0, 2, 2.4f, -0.3f, 2.4f };
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = noc_scene_add_material(scene, &m),
+                      .model = model,
+                      .uv = texture && !flat ? uv : NULL };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+    return mesh.material;
+}
+
+/* An image with holes in two of five of its texels. */
+static inline int holed(noc_scene *scene, noc_wrap wrap) {
+    unsigned char rgb[3 * 25], holes[25];
+    for (int i = 0; i < 25; i++) {
+        rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (unsigned char)(90 + 5 * i);
+        holes[i] = i * 7 % 5 < 2;
+    }
+    return noc_scene_add_texture(scene, &(noc_texture){ 5, 5, rgb, .holes = holes, .wrap = wrap });
+}
+
+/* Panes before the eye and under the lights, some with holes, one with a texture but no place in it, one of a model. */
+static inline void add_panes(noc_scene *s, int model) {
+    add_pane(s, 0.6f, 0, 0, (double[]){ -4, -7, 0 }, 4, 4, false);
+    add_pane(s, 0.5f, 0, 0, (double[]){ -6, -6, 2.5 }, 9, 9, true);
+    add_pane(s, 0.2f, holed(s, NOC_WRAP_REPEAT), 0, (double[]){ 1, -6, 0 }, 2, 2, false);
+    add_pane(s, 0, holed(s, NOC_WRAP_MIRROR), 0, (double[]){ -2, -3, 0 }, 4, 3, false);
+    add_pane(s, 0.7f, holed(s, NOC_WRAP_CLAMP), 0, (double[]){ 2, -5, 3.5 }, 4, 4, true);
+    add_pane(s, 0.5f, 0, model, (double[]){ -0.5, -0.3, 0 }, 1, 1.5, false);
+}
+
 /* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles. */
-static inline noc_scene *all_kinds(int *car) {
+static inline noc_scene *all_kinds_with(bool panes, int *car) {
     noc_scene *s = noc_scene_create(NULL);
     int texture = chequers(s), profiles = add_test_profiles(s);
     int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { .2f, .2f, .25f }, .f0 = .05f, .roughness = .3f });
@@ -50,6 +93,8 @@ static inline noc_scene *all_kinds(int *car) {
     int model = noc_scene_add_model(s, "car");
     int groups[2] = { noc_scene_add_group(s, "left"), noc_scene_add_group(s, "right") };
     add_board(s, texture, model, 0.5, true);
+    if (panes)
+        add_panes(s, model);
     noc_light head = { .kind = NOC_LIGHT_DISC,
                        .position = { 0, -0.1, 1.2 },
                        .direction = { 0, -1, -0.3 },
@@ -76,6 +121,8 @@ static inline noc_scene *all_kinds(int *car) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
 }
+
+static inline noc_scene *all_kinds(int *car) { return all_kinds_with(false, car); }
 
 static inline noc_render_params all_kinds_params(noc_method method, bool map) {
     noc_render_params p = noc_render_default_params();

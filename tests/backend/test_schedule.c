@@ -54,12 +54,13 @@ static void schedule(const noc_plan *plan, const vk_facts *facts, vk_steps *step
 }
 
 static vk_steps steps;
-static size_t waits, dispatches, plans, noticed;
+static size_t waits, dispatches, plans, noticed, added;
 
 static void check_barriers(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
     facts.views = plans % 2; /* what steps gather for views has barriers, too */
+    facts.panes = plans / 2 % 2;
     model m = { 0 };
     (void)surfaces;
     plans++;
@@ -83,6 +84,7 @@ static void check_each_barrier(const noc_render_params *p, const noc_plan *plan,
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
     facts.views = noticed / 16 % 2;
+    facts.panes = noticed / 32 % 2;
     (void)surfaces;
     if (p->passes != 2 || history > 0)
         return;
@@ -107,6 +109,44 @@ static void each_barrier_is_needed(void **state) {
     assert_true(noticed > 10000);
 }
 
+/* Surfaces that let light through add rays to shading, which asks of all its samples, and camera rays meet them by
+ * another shader. All else is as without them; so a scene that has none costs nothing for them. */
+static void check_panes(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
+    vk_steps with = { 0 };
+    frame_constants c;
+    vk_facts facts = facts_for(p, map, history, &c);
+    (void)surfaces;
+    schedule(plan, &facts, &steps);
+    facts.panes = true;
+    schedule(plan, &facts, &with);
+    size_t k = 0;
+    for (size_t i = 0; i < steps.len; i++, k++) {
+        vk_step a = steps.data[i], b = with.data[k];
+        assert_true(a.shader != VK_SHADER_trace_meeting && a.shader != VK_SHADER_trace_through);
+        assert_false((a.reads | a.writes) >> VK_RESOURCE_THROUGH & 1);
+        assert_int_equal(b.shader, a.shader == VK_SHADER_trace_closest ? VK_SHADER_trace_meeting : a.shader);
+        assert_int_equal(b.reads & ~(1u << VK_RESOURCE_THROUGH), a.reads);
+        assert_int_equal(b.writes, a.writes);
+        assert_int_equal(b.first, a.first + (a.shader == VK_SHADER_resolve_ask && a.pass == NOC_PASS_SHADE));
+        bool shades = a.pass == NOC_PASS_SHADE || a.pass == NOC_PASS_SHADE_ALL || a.pass == NOC_PASS_SKY ||
+                      a.pass == NOC_PASS_TRACE_SHARED;
+        if (a.shader != VK_SHADER_trace_occlusion || !shades)
+            continue;
+        k++;
+        assert_int_equal(with.data[k].shader, VK_SHADER_trace_through);
+        assert_true(with.data[k].slots == a.slots && with.data[k].band == a.band && with.data[k].rows == a.rows);
+        added++;
+    }
+    assert_int_equal(k, with.len);
+    array_free(&with);
+}
+
+static void panes_add_rays_alone(void **state) {
+    (void)state;
+    each_plan(check_panes);
+    assert_true(added > 1000);
+}
+
 /* What a pass of the plan reads and writes, as resources. */
 static uint32_t resources(const noc_stage *s, uint32_t buffers) {
     static const uint32_t of[NOC_BUFFER_COUNT] = { [NOC_BUFFER_SURFACES] = 1u << VK_RESOURCE_SURFACES,
@@ -126,10 +166,11 @@ static uint32_t resources(const noc_stage *s, uint32_t buffers) {
 static void check_tables(const noc_render_params *p, const noc_plan *plan, int history, bool map, bool surfaces) {
     frame_constants c;
     vk_facts facts = facts_for(p, map, history, &c);
-    uint32_t own = 1u << VK_RESOURCE_RAYS | 1u << VK_RESOURCE_ANSWERS | 1u << VK_RESOURCE_HITS |
-                   1u << VK_RESOURCE_SAMPLES | 1u << VK_RESOURCE_SCRATCH | 1u << VK_RESOURCE_OBSERVED |
-                   1u << VK_RESOURCE_BRIGHT;
+    uint32_t own = 1u << VK_RESOURCE_RAYS | 1u << VK_RESOURCE_ANSWERS | 1u << VK_RESOURCE_THROUGH |
+                   1u << VK_RESOURCE_HITS | 1u << VK_RESOURCE_SAMPLES | 1u << VK_RESOURCE_SCRATCH |
+                   1u << VK_RESOURCE_OBSERVED | 1u << VK_RESOURCE_BRIGHT;
     (void)surfaces;
+    facts.panes = plans++ % 2;
     for (int i = 0; i < plan->count; i++) {
         const noc_stage *s = &plan->stages[i];
         steps.len = 0;
@@ -159,6 +200,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_step_sees_what_it_reads),
         cmocka_unit_test(each_barrier_is_needed),
+        cmocka_unit_test(panes_add_rays_alone),
         cmocka_unit_test(steps_do_what_the_plan_says),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,7 +58,7 @@ typedef struct trial {
     const char *name;
     noc_render_params first, then; /* `first` is not refused; without a size there is no such frame */
     void (*edit)(noc_scene *scene, int car, long number);
-    bool floor;
+    bool floor, panes;
     int step; /* from one number to the next that is refused; 0: 1 */
 } trial;
 
@@ -128,7 +128,7 @@ static noc_image *picture_without(const trial *t, noc_scene *scene) {
 static void run_trial(const trial *t) {
     const int step = NOC_MAX(t->step, 1) * (SANITIZED ? 5 : 1);
     int car;
-    noc_scene *scene = all_kinds(&car);
+    noc_scene *scene = all_kinds_with(t->panes, &car);
     fault_none();
     noc_image *kept = t->edit ? NULL : picture_without(t, scene);
     noc_device *device = open_vulkan();
@@ -174,6 +174,7 @@ static void frames_are_refused(void **state) {
         { .name = "lists", .then = small_params(NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS), .step = 3 },
         { .name = "a tree", .then = small_params(NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH), .step = 7 },
         { .name = "views", .then = small_params(NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM), .step = 3 },
+        { .name = "panes", .then = small_params(NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM), .panes = true, .step = 2 },
     };
     (void)state;
     if (!has_vulkan())

@@ -65,13 +65,14 @@ static void frames_are_valid(void **state) {
         const char *name;
         noc_method method;
         noc_candidates candidates;
-        bool views, map;
-    } plans[] = { { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, false },
-                  { "restir", NOC_METHOD_RESTIR, NOC_CANDIDATES_POWER, false, false },
-                  { "a tree, a map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, false, true },
-                  { "lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, false },
-                  { "lists, views", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, true, false },
-                  { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, false } };
+        bool views, map, panes;
+    } plans[] = { { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false, false, false },
+                  { "restir", NOC_METHOD_RESTIR, NOC_CANDIDATES_POWER, false, false, false },
+                  { "a tree, a map", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, false, true, false },
+                  { "lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, false, false },
+                  { "lists, views", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, true, false, false },
+                  { "panes", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, false, false, true },
+                  { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false, false, false } };
     noc_device *device = open_validated();
     noc_trace_floor floor;
     int car;
@@ -79,7 +80,7 @@ static void frames_are_valid(void **state) {
     if (!device)
         skip();
     for (size_t i = 0; i < NOC_COUNT(plans); i++) {
-        noc_scene *scene = all_kinds(&car);
+        noc_scene *scene = all_kinds_with(plans[i].panes, &car);
         noc_image *map = plans[i].map ? bright_map() : NULL;
         if (map)
             assert_int_equal(noc_scene_set_environment(scene, map), NOC_OK);

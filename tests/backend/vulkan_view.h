@@ -4,6 +4,7 @@
 #define NOC_TEST_VULKAN_VIEW_H
 
 #include "backend/vulkan/vulkan.h"
+#include "core/random.h"
 #include "cpu_view.h"
 #include "render/device.h"
 #include "render/view.h"
@@ -21,6 +22,7 @@ typedef struct twins {
     noc_device *cpu_device, *device;
     noc_view *cpu, *gpu; /* of one scene */
     vk_answerer answerer;
+    size_t weakened; /* rays that the CPU's tracer has answered with a transmittance between 0 and 1 */
 } twins;
 
 static inline cpu_view *cpu_of(const twins *t) { return t->cpu->state; }
@@ -28,8 +30,29 @@ static inline vk_view *gpu_of(const twins *t) { return t->gpu->state; }
 
 /* Where each triangle is in the BLAS of an entry: the numbers that hits have. */
 typedef struct hit_numbers {
-    uint32_t *entry, *at; /* of the scene's triangles, of the world alone */
+    uint32_t *entry; /* of the scene's triangles: of all; of models', of their part's */
+    uint32_t *at;
 } hit_numbers;
+
+static inline uint32_t entries_of(const vk_part *p) {
+    uint32_t n = 0;
+    for (int layer = 0; layer < VK_LAYERS; layer++)
+        n += (uint32_t)p->blas[layer].len;
+    return n;
+}
+
+static inline void number_part(const vk_world *w, const vk_part *part, uint32_t number, uint32_t *order,
+                               hit_numbers *n) {
+    for (int layer = 0; layer < VK_LAYERS; layer++)
+        for (size_t k = 0; k < part->blas[layer].len; k++, number++) {
+            const vk_piece *b = &part->blas[layer].data[k].order;
+            assert_int_equal(noc_vk_read(w->device, &b->chunk->buffer, b->at, order, (size_t)b->bytes), NOC_OK);
+            for (uint32_t p = 0; p < b->bytes / 4; p++) {
+                n->entry[order[p]] = number;
+                n->at[order[p]] = p;
+            }
+        }
+}
 
 static inline hit_numbers find_numbers(const vk_world *w) {
     const vk_parts *parts = &w->structure.tlas[w->structure.now].held;
@@ -37,15 +60,11 @@ static inline hit_numbers find_numbers(const vk_world *w) {
     hit_numbers n = { noc_calloc(triangles, 4), noc_calloc(triangles, 4) };
     uint32_t *order = noc_calloc(triangles, 4), number = 0;
     assert_true(n.entry && n.at && order);
-    for (size_t i = 0; i < parts->len; i++)
-        for (size_t k = 0; k < parts->data[i]->blas.len; k++, number++) {
-            const vk_piece *b = &parts->data[i]->blas.data[k].order;
-            assert_int_equal(noc_vk_read(w->device, &b->chunk->buffer, b->at, order, (size_t)b->bytes), NOC_OK);
-            for (uint32_t p = 0; p < b->bytes / 4; p++) {
-                n.entry[order[p]] = number;
-                n.at[order[p]] = p;
-            }
-        }
+    for (size_t i = 0; i < parts->len; i++) {
+        bool world = i < w->structure.world.len;
+        number_part(w, parts->data[i], world ? number : 0, order, &n);
+        number += world ? entries_of(parts->data[i]) : 0;
+    }
     free(order);
     return n;
 }
@@ -56,21 +75,31 @@ static inline uint32_t entry_of(const vk_world *w, const hit_numbers *n, uint32_
     if (instance == NO_INSTANCE)
         return n->entry[triangle];
     for (size_t i = 0; i < w->structure.world.len; i++)
-        entry += (uint32_t)w->structure.world.data[i]->blas.len;
-    for (uint32_t i = 0; i < instance; i++)
-        entry += w->scene->instances.data[i].model != 0;
-    return entry;
+        entry += entries_of(w->structure.world.data[i]);
+    for (uint32_t i = 0; i < instance; i++) {
+        uint32_t model = w->scene->instances.data[i].model;
+        entry += model ? entries_of(w->structure.models.data[model - 1]) : 0;
+    }
+    return entry + n->entry[triangle];
+}
+
+/* By which the camera's rays of a block meet panes. */
+static inline void keys_of(const vk_view *v, size_t block, uint32_t key[BLOCK]) {
+    const frame_constants *c = v->flights[v->flight].constants.mapped;
+    uint32_t x = (uint32_t)block % v->b.blocks_x * 4, y = (uint32_t)block / v->b.blocks_x * 4;
+    for (uint32_t l = 0; l < BLOCK; l++)
+        key[l] = rng_key(c->seed, (y + l / 4) * c->width + x + l % 4, c->index);
 }
 
 /* Nearest hits of a block's rays by the CPU's tracer, as a ray tracing shader leaves them. */
 static inline void answer_closest(const twins *t, const hit_numbers *numbers, const rayblock *rays,
-                                  const uint32_t *wanted, uint32_t out[5][BLOCK]) {
+                                  const uint32_t *chance, const uint32_t *wanted, uint32_t out[5][BLOCK]) {
     const cpu_world *w = cpu_of(t)->world;
     hitblock h;
     uint32_t valid = 0;
     for (int l = 0; l < BLOCK; l++)
         valid |= (uint32_t)(wanted[l] == VK_ANSWER_WANTED) << l;
-    w->device->tracer->closest(w->rays, NOC_RAYS_NOW, rays, INFINITY, valid, true, NULL, &h);
+    w->device->tracer->closest(w->rays, NOC_RAYS_NOW, rays, INFINITY, valid, true, chance, &h);
     for (int l = 0; l < BLOCK; l++) {
         out[0][l] = NO_HIT;
         if (h.triangle[l] == NO_HIT)
@@ -94,32 +123,57 @@ static inline void answer_occlusion(const twins *t, bool past, const rayblock *r
             answers[l] = (answers[l] & ~3u) | VK_ANSWER_CLEAR;
 }
 
+/* Transmittances of segments that nothing blocks; of the others anything may be there. */
+static inline void answer_through(twins *t, const rayblock *rays, const uint32_t *answers, float *through) {
+    const cpu_world *w = cpu_of(t)->world;
+    shadow_block b = { .rays = *rays };
+    for (int l = 0; l < BLOCK; l++)
+        b.unoccluded |= (uint32_t)((answers[l] & 3) == VK_ANSWER_CLEAR) << l;
+    if (!w->device->tracer->through(w->rays, &b, 1, (float(*)[BLOCK])(void *)through))
+        for (int l = 0; l < BLOCK; l++)
+            through[l] = 1;
+    for (int l = 0; l < BLOCK; l++)
+        t->weakened += through[l] > 0 && through[l] < 1;
+}
+
 static inline noc_status answer_by_cpu(void *user, const vk_step *step) {
-    const twins *t = user;
+    twins *t = user;
     vk_view *v = gpu_of(t);
     size_t blocks = noc_vk_step_rays(step, v->b.blocks_x, v->b.blocks_y) / BLOCK;
     rayblock *rays = noc_alloc_large(blocks, sizeof(*rays));
     uint32_t(*answers)[BLOCK] = noc_alloc_large(blocks, sizeof(*answers));
     uint32_t(*hits)[5][BLOCK] = noc_alloc_large(blocks, sizeof(*hits));
-    assert_true(rays && answers && hits);
-    bool closest = step->shader == VK_SHADER_trace_closest;
+    float(*through)[BLOCK] = noc_calloc(blocks, sizeof(*through));
+    uint32_t key[BLOCK];
+    assert_true(rays && answers && hits && through);
+    bool closest = step->shader == VK_SHADER_trace_closest || step->shader == VK_SHADER_trace_meeting;
+    bool weakens = step->shader == VK_SHADER_trace_through;
+    assert_true(v->scene->lets_through || step->shader == VK_SHADER_trace_closest ||
+                step->shader == VK_SHADER_trace_occlusion); /* scenes without panes have none of it */
     hit_numbers numbers = { NULL, NULL };
     if (closest)
         numbers = find_numbers(v->world);
     TRY(noc_vk_read(v->device, &v->b.rays, 0, rays, blocks * sizeof(*rays)));
     TRY(noc_vk_read(v->device, &v->b.answers, 0, answers, blocks * sizeof(*answers)));
-    for (size_t i = 0; i < blocks; i++)
+    for (size_t i = 0; i < blocks; i++) {
+        keys_of(v, i, key);
         if (closest)
-            answer_closest(t, &numbers, &rays[i], answers[i], hits[i]);
+            answer_closest(t, &numbers, &rays[i], key, answers[i], hits[i]);
+        else if (weakens)
+            answer_through(t, &rays[i], answers[i], through[i]);
         else
             answer_occlusion(t, step->past, &rays[i], answers[i]);
+    }
     if (closest)
         TRY(noc_vk_write(v->device, &v->b.hits, 0, hits, blocks * sizeof(*hits)));
+    else if (weakens)
+        TRY(noc_vk_write(v->device, &v->b.through, 0, through, blocks * sizeof(*through)));
     else
         TRY(noc_vk_write(v->device, &v->b.answers, 0, answers, blocks * sizeof(*answers)));
     free(rays);
     free(answers);
     free(hits);
+    free(through);
     free(numbers.entry);
     free(numbers.at);
     return NOC_OK;

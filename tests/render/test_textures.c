@@ -172,11 +172,8 @@ static void test_edit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_way_up),
-        cmocka_unit_test(test_no_places),
-        cmocka_unit_test(test_far),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_edit),
+        cmocka_unit_test(test_way_up),    cmocka_unit_test(test_no_places), cmocka_unit_test(test_far),
+        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_edit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -210,11 +210,13 @@ static noc_status upload_triangles(vk_world *w, const uint32_t *order, size_t co
     return status;
 }
 
-static void describe_build(const vk_world *w, size_t count, building *b) {
+/* Opaque triangles call no any-hit shader; others call it once each. */
+static void describe_build(const vk_world *w, vk_layer layer, size_t count, building *b) {
     b->geometry = (VkAccelerationStructureGeometryKHR){
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
         .geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR,
-        .flags = VK_GEOMETRY_OPAQUE_BIT_KHR,
+        .flags =
+            layer == VK_LAYER_SOLID ? VK_GEOMETRY_OPAQUE_BIT_KHR : VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR,
         .geometry.triangles = { .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR,
                                 .vertexFormat = VK_FORMAT_R32G32B32_SFLOAT,
                                 .vertexData.deviceAddress = w->positions.buffer.address,
@@ -236,13 +238,13 @@ static void describe_build(const vk_world *w, size_t count, building *b) {
 }
 
 /* Builds, and asks for the size that the structure needs. */
-static noc_status build(vk_world *w, size_t count, building *b) {
+static noc_status build(vk_world *w, vk_layer layer, size_t count, building *b) {
     vk_device *d = w->device;
     VkDeviceSize align = NOC_MAX(d->structures.minAccelerationStructureScratchOffsetAlignment, 1);
     VkAccelerationStructureBuildSizesInfoKHR sizes = {
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR
     };
-    describe_build(w, count, b);
+    describe_build(w, layer, count, b);
     vkGetAccelerationStructureBuildSizesKHR(d->device, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &b->info,
                                             &b->range.primitiveCount, &sizes);
     VkDeviceAddress address;
@@ -301,7 +303,7 @@ static noc_status compact(vk_world *w, const building *b, vk_blas *blas) {
     return noc_vk_wait_idle(d);
 }
 
-noc_status noc_vk_build_blas(vk_world *w, uint32_t *order, size_t count, vk_blas_list *list) {
+noc_status noc_vk_build_blas(vk_world *w, vk_layer layer, uint32_t *order, size_t count, vk_blas_list *list) {
     vk_device *d = w->device;
     building b = { 0 };
     if (!array_push(list, (vk_blas){ 0 }))
@@ -311,7 +313,7 @@ noc_status noc_vk_build_blas(vk_world *w, uint32_t *order, size_t count, vk_blas
     if (status == NOC_OK)
         status = upload_triangles(w, order, count, blas, &b);
     if (status == NOC_OK)
-        status = build(w, count, &b);
+        status = build(w, layer, count, &b);
     if (status == NOC_OK)
         status = compact(w, &b, blas);
     free_building(d, &b);

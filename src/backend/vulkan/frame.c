@@ -90,6 +90,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
                        .past = noc_past_other_shape(&v->past, v->scene),
                        .given = frame->receivers != NULL,
                        .views = v->views.bits != 0,
+                       .panes = v->scene->lets_through,
                        .lights = (uint32_t)v->scene->lights.len,
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
@@ -117,6 +118,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .triangle_light = w->triangle_light.buffer.address,
         .image_places = w->image_places.buffer.address,
         .image_corners = w->image_corners.buffer.address,
+        .panes = w->panes.buffer.address,
         .instances = w->instances.buffer.address,
         .backs = w->backs.buffer.address,
         .instance_lights = w->instance_lights.buffer.address,
@@ -136,6 +138,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .coverage = b->coverage.address,
         .rays = b->rays.address,
         .answers = b->answers.address,
+        .through = b->through.address,
         .hits = b->hits.address,
         .samples = v->samples.address,
         .scratch = v->scratch.address,
@@ -160,6 +163,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .by_power = frame->plan->candidates == NOC_CANDIDATES_POWER,
         .light_count = (uint32_t)v->scene->lights.len,
         .textured = v->scene->texels.len > 0 && v->scene->uv.len > 0,
+        .weakens = v->scene->lets_through,
         .instanced = b->instance.bytes > 0,
         .moved = b->instance.bytes > 0 && noc_past_other_shape(&v->past, v->scene),
         .blocks_y = b->blocks_y,
@@ -259,8 +263,7 @@ static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding 
     if (traces)
         vkCmdBindDescriptorSets(f->commands, point, v->device->layout, 0, 1,
                                 &s->tlas[step->past ? 1 - s->now : s->now].set, 0, NULL);
-    vkCmdPushConstants(f->commands, v->device->layout, VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR, 0,
-                       sizeof(address), &address);
+    vkCmdPushConstants(f->commands, v->device->layout, VK_PUSH_STAGES, 0, sizeof(address), &address);
     dispatch(v, step, p);
     return NOC_OK;
 }
@@ -561,7 +564,15 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
 noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
     vk_flight *f = &v->flights[v->flight];
     const vk_picture *b = &v->b;
-    vk_binding common = { .frame = f->constants.address, /* of an earlier frame: its width is all that is read */
+    const vk_world *w = v->world;
+    vk_binding common = { .frame = f->constants.address, /* of an earlier frame: by chance rays meet other panes */
+                          .entries = w->structure.entries.address,
+                          .indices = w->indices.buffer.address,
+                          .triangle_material = w->triangle_material.buffer.address,
+                          .texels = w->texels.buffer.address,
+                          .image_corners = w->image_corners.buffer.address,
+                          .panes = w->panes.buffer.address,
+                          .through = b->through.address,
                           .hits = b->hits.address,
                           .counters = v->counters.address,
                           .blocks_y = b->blocks_y };

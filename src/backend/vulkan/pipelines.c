@@ -16,11 +16,11 @@ typedef struct module {
     size_t bytes;
 } module;
 
-/* Code of a shader's stages: compute alone, or ray generation, miss and closest hit. */
+/* Code of a shader's stages: compute alone, or ray generation, miss, closest hit, and perhaps any hit. */
 static const struct shader_code {
     const char *name;
     bool traces;
-    module first, miss, hit;
+    module first, miss, hit, any;
 } codes[VK_SHADER_COUNT] = {
 #define CODE(array)                                                                                                    \
     { array, sizeof(array) }
@@ -31,7 +31,14 @@ static const struct shader_code {
                              .first = CODE(shader##_rgen),                                                             \
                              .miss = CODE(shader##_rmiss),                                                             \
                              .hit = CODE(shader##_rchit) },
-    VK_SHADERS(COMPUTE, TRACE)
+#define PANES(shader, of)                                                                                              \
+    [VK_SHADER_##shader] = { .name = #shader,                                                                          \
+                             .traces = true,                                                                           \
+                             .first = CODE(shader##_rgen),                                                             \
+                             .miss = CODE(of##_rmiss),                                                                 \
+                             .hit = CODE(of##_rchit),                                                                  \
+                             .any = CODE(shader##_rahit) },
+    VK_SHADERS(COMPUTE, TRACE, PANES)
 };
 
 /* ---- the cache on disk ---- */
@@ -142,8 +149,7 @@ static VkResult make_layout(vk_device *d) {
     VkResult result = vkCreateDescriptorSetLayout(d->device, &set, NULL, &d->set_layout);
     if (result != VK_SUCCESS)
         return result;
-    VkPushConstantRange range = { .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR,
-                                  .size = sizeof(VkDeviceAddress) };
+    VkPushConstantRange range = { .stageFlags = VK_PUSH_STAGES, .size = sizeof(VkDeviceAddress) };
     VkPipelineLayoutCreateInfo layout = { .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                           .setLayoutCount = 1,
                                           .pSetLayouts = &d->set_layout,
@@ -217,28 +223,31 @@ static VkResult make_compute(vk_device *d, const struct shader_code *code, VkPip
 
 /* Group 0 generates rays, 1 is the miss shader, 2 the hit group. */
 static VkResult make_trace(vk_device *d, const struct shader_code *code, VkPipeline *out) {
-    const module *modules[] = { &code->first, &code->miss, &code->hit };
+    const module *modules[] = { &code->first, &code->miss, &code->hit, &code->any };
     static const VkShaderStageFlagBits kinds[] = { VK_SHADER_STAGE_RAYGEN_BIT_KHR, VK_SHADER_STAGE_MISS_BIT_KHR,
-                                                   VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR };
-    VkShaderModule made[3] = { VK_NULL_HANDLE };
-    VkPipelineShaderStageCreateInfo stages[3];
+                                                   VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR,
+                                                   VK_SHADER_STAGE_ANY_HIT_BIT_KHR };
+    uint32_t count = code->any.code ? 4 : 3;
+    VkShaderModule made[4] = { VK_NULL_HANDLE };
+    VkPipelineShaderStageCreateInfo stages[4];
     VkRayTracingShaderGroupCreateInfoKHR groups[3];
     VkResult result = VK_SUCCESS;
-    for (uint32_t i = 0; i < 3 && result == VK_SUCCESS; i++) {
+    for (uint32_t i = 0; i < count && result == VK_SUCCESS; i++) {
         result = make_module(d, modules[i], &made[i]);
         stages[i] = stage_of(kinds[i], made[i]);
+    }
+    for (uint32_t i = 0; i < 3; i++)
         groups[i] = (VkRayTracingShaderGroupCreateInfoKHR){
             .sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
             .type = i < 2 ? VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR
                           : VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR,
             .generalShader = i < 2 ? i : VK_SHADER_UNUSED_KHR,
             .closestHitShader = i < 2 ? VK_SHADER_UNUSED_KHR : i,
-            .anyHitShader = VK_SHADER_UNUSED_KHR,
+            .anyHitShader = i == 2 && code->any.code ? 3 : VK_SHADER_UNUSED_KHR,
             .intersectionShader = VK_SHADER_UNUSED_KHR,
         };
-    }
     VkRayTracingPipelineCreateInfoKHR info = { .sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR,
-                                               .stageCount = 3,
+                                               .stageCount = count,
                                                .pStages = stages,
                                                .groupCount = 3,
                                                .pGroups = groups,
@@ -246,7 +255,7 @@ static VkResult make_trace(vk_device *d, const struct shader_code *code, VkPipel
                                                .layout = d->layout };
     if (result == VK_SUCCESS)
         result = vkCreateRayTracingPipelinesKHR(d->device, VK_NULL_HANDLE, d->cache, 1, &info, NULL, out);
-    for (int i = 0; i < 3; i++)
+    for (uint32_t i = 0; i < count; i++)
         if (made[i])
             vkDestroyShaderModule(d->device, made[i], NULL);
     return result;

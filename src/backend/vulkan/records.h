@@ -13,6 +13,16 @@ struct vk_instance_record {
     uint32_t lights;          /* place of its lights' numbers in the table of such */
 };
 
+/* What lets light through of a material. */
+struct vk_pane_record {
+    float transmittance;
+    uint32_t holes; /* place of the texture whose holes it has, + 1; 0: none */
+};
+
+/* Masks of instances: surfaces that block light, and those that let it through. */
+#define VK_MASK_SOLID 1u
+#define VK_MASK_THROUGH 2u
+
 #define VK_REFERENCE_CHUNKS 64u /* of lights, that a dispatch sums up */
 #define VK_REFERENCE_RAYS 8u    /* of a pixel, that are traced at once */
 
@@ -37,6 +47,7 @@ struct vk_instance_record {
     ADDRESS(Words, triangle_light)                                                                                     \
     ADDRESS(Words, image_places)  /* of each material the place of its texture + 1; 0: none */                         \
     ADDRESS(Words, image_corners) /* 2 floats a vertex as bits; 0xffffffff: its mesh has none */                       \
+    ADDRESS(Panes, panes)         /* of each material; none: no surface lets light through */                          \
     ADDRESS(Instances, instances)                                                                                      \
     ADDRESS(Backs, backs) /* of each instance */                                                                       \
     ADDRESS(Words, instance_lights)                                                                                    \
@@ -60,6 +71,7 @@ struct vk_instance_record {
     ADDRESS(Coverages, coverage)                                                                                       \
     ADDRESS(RayBlocks, rays)                                                                                           \
     ADDRESS(Words, answers)                                                                                            \
+    ADDRESS(Floats, through) /* transmittance on the way of each ray that arrived, while panes is there */             \
     ADDRESS(HitBlocks, hits)                                                                                           \
     ADDRESS(SampleRows, samples)                                                                                       \
     ADDRESS(Words, scratch)  /* of a band of the picture */                                                            \
@@ -80,7 +92,8 @@ struct vk_instance_record {
     ADDRESS(Floats, emitter_labels) /* of each light */                                                                \
     ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
     WORD(uint32_t, light_count)                                                                                        \
-    WORD(uint32_t, textured)  /* 1: materials have textures, and meshes places in them */                             \
+    WORD(uint32_t, textured)  /* 1: materials have textures, and meshes places in them */                              \
+    WORD(uint32_t, weakens)   /* 1: light is weakened by `through` */                                                  \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
     WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
     WORD(uint32_t, slots)     /* pixels of the blocks whose rays are kept at once: rays of one slot */                 \
@@ -95,7 +108,7 @@ struct vk_instance_record {
     WORD(uint32_t, dimension) /* of reuse: DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */                                 \
     WORD(uint32_t, first_row) /* of blocks, at which this dispatch begins, and how many its band has */                \
     WORD(uint32_t, rows)                                                                                               \
-    WORD(uint32_t, first)         /* ray, or chunk of lights, at which this dispatch begins */                         \
+    WORD(uint32_t, first)         /* ray, or chunk of lights, at which this dispatch begins; or which of two it is */  \
     WORD(uint32_t, views)         /* VK_VIEW_ bits of what is gathered */                                              \
     WORD(uint32_t, light_colours) /* core/measured.h */                                                                \
     WORD(uint32_t, by_power)      /* 1: candidates are drawn by power */                                               \
@@ -136,8 +149,10 @@ struct vk_entry {
 };
 
 typedef struct vk_instance_record vk_instance_record;
+typedef struct vk_pane_record vk_pane_record;
 typedef struct vk_entry vk_entry;
 RECORD_SIZE(vk_instance_record, 13);
+RECORD_SIZE(vk_pane_record, 2);
 RECORD_SIZE(vk_entry, 4);
 
 #define VK_ADDRESS_FIELD(type, name) uint64_t name;

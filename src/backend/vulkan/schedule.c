@@ -72,13 +72,27 @@ static vk_step *trace(scheduling *s, int slots, bool past) {
     return step;
 }
 
+/* Finds what surfaces let through on the way of rays that the step before has answered. */
+static void pass_panes(scheduling *s, int slots, bool band) {
+    if (!s->facts->panes)
+        return;
+    vk_step *step = add(s, VK_SHADER_trace_through, R(RAYS) | R(ANSWERS), R(THROUGH));
+    step->domain = VK_DOMAIN_RAYS;
+    step->slots = slots;
+    step->band = band;
+}
+
+/* What shading reads of its rays. */
+static uint32_t answers(const scheduling *s) { return R(ANSWERS) | (s->facts->panes ? R(THROUGH) : 0); }
+
 static void primary(scheduling *s) {
+    vk_shader shader = s->facts->panes ? VK_SHADER_trace_meeting : VK_SHADER_trace_closest;
     if (s->facts->given) {
         add(s, VK_SHADER_place, 0, R(SURFACES));
         return;
     }
     add(s, VK_SHADER_primary_ask, 0, R(RAYS) | R(ANSWERS));
-    add(s, VK_SHADER_trace_closest, R(RAYS) | R(ANSWERS), R(HITS))->domain = VK_DOMAIN_RAYS;
+    add(s, shader, R(RAYS) | R(ANSWERS), R(HITS))->domain = VK_DOMAIN_RAYS;
     add(s, VK_SHADER_primary_use, R(HITS) | R(RAYS), R(SURFACES));
 }
 
@@ -99,15 +113,15 @@ static void candidates_tree(scheduling *s) {
     add(s, VK_SHADER_candidates_tree, R(SURFACES), set_bit(s->stage->target));
 }
 
-/* Asks of the target's samples whose visibility is not known. */
-static void ask_samples(scheduling *s) {
-    add(s, VK_SHADER_resolve_ask, R(SURFACES) | set_bit(s->stage->target), R(RAYS) | R(ANSWERS));
+/* Asks of the target's samples: of all, or of those whose visibility is not known. */
+static void ask_samples(scheduling *s, bool all) {
+    add(s, VK_SHADER_resolve_ask, R(SURFACES) | set_bit(s->stage->target), R(RAYS) | R(ANSWERS))->first = all;
     trace(s, 1, false);
 }
 
 static void resolve(scheduling *s) {
     uint32_t target = set_bit(s->stage->target);
-    ask_samples(s);
+    ask_samples(s, false);
     add(s, VK_SHADER_resolve_use, R(ANSWERS) | target, target);
 }
 
@@ -142,9 +156,11 @@ static void emitters(scheduling *s) { add(s, VK_SHADER_emitters, R(SURFACES), R(
 
 static void shade(scheduling *s) {
     bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
-    if (rays)
-        ask_samples(s);
-    add(s, VK_SHADER_shade_use, R(SURFACES) | R(COLOUR) | set_bit(s->stage->target) | (rays ? R(ANSWERS) : 0),
+    if (rays) {
+        ask_samples(s, s->facts->panes); /* how much arrives is not known of any */
+        pass_panes(s, 1, false);
+    }
+    add(s, VK_SHADER_shade_use, R(SURFACES) | R(COLOUR) | set_bit(s->stage->target) | (rays ? answers(s) : 0),
         R(COLOUR));
 }
 
@@ -167,8 +183,9 @@ static void reference_rays(scheduling *s, uint32_t first, uint32_t first_row, ui
         vk_step *ask = add(s, VK_SHADER_reference_ask, R(SURFACES) | R(SCRATCH), R(RAYS) | R(ANSWERS));
         ask->slots = VK_REFERENCE_RAYS;
         trace(s, VK_REFERENCE_RAYS, false);
+        pass_panes(s, VK_REFERENCE_RAYS, false);
     }
-    add(s, VK_SHADER_reference_use, R(SURFACES) | R(SCRATCH) | R(COLOUR) | (rays ? R(ANSWERS) : 0), R(COLOUR));
+    add(s, VK_SHADER_reference_use, R(SURFACES) | R(SCRATCH) | R(COLOUR) | (rays ? answers(s) : 0), R(COLOUR));
     for (size_t i = from; i < s->steps->len; i++) {
         s->steps->data[i].first = first;
         s->steps->data[i].first_row = first_row;
@@ -205,7 +222,8 @@ static void sky(scheduling *s) {
         if (!s->facts->sky)
             return;
         trace(s, 1, false);
-        add(s, VK_SHADER_sky_use, R(SURFACES) | R(COLOUR) | R(RAYS) | R(ANSWERS), R(COLOUR));
+        pass_panes(s, 1, false);
+        add(s, VK_SHADER_sky_use, R(SURFACES) | R(COLOUR) | R(RAYS) | answers(s), R(COLOUR));
     }
 }
 
@@ -275,8 +293,10 @@ static void share_rays(scheduling *s) {
 
 static void trace_shared(scheduling *s) {
     bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
-    if (rays)
+    if (rays) {
         trace(s, list_slots(s->plan, s->facts), false)->band = true;
+        pass_panes(s, list_slots(s->plan, s->facts), true);
+    }
     add_list(s, VK_SHADER_list_use, VK_DOMAIN_PIXELS, rays ? R(ANSWERS) : 0,
              R(SCRATCH) | set_bit(s->stage->target) | (s->plan->learns ? R(OBSERVED) : 0));
 }
@@ -287,9 +307,10 @@ static void resample(scheduling *s) {
 }
 
 static void shade_shared(scheduling *s) {
+    uint32_t reads = set_bit(s->stage->target) | (s->facts->panes ? R(THROUGH) : 0);
     if (s->facts->views)
-        add_list(s, VK_SHADER_list_sources, VK_DOMAIN_PIXELS, R(SURFACES) | set_bit(s->stage->target), 0);
-    add_list(s, VK_SHADER_list_shade, VK_DOMAIN_PIXELS, set_bit(s->stage->target) | R(COLOUR), R(COLOUR));
+        add_list(s, VK_SHADER_list_sources, VK_DOMAIN_PIXELS, reads | R(SURFACES), 0);
+    add_list(s, VK_SHADER_list_shade, VK_DOMAIN_PIXELS, reads | R(COLOUR), R(COLOUR));
 }
 
 /* ---- influence: bands of tiles, too ---- */

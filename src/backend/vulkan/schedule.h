@@ -20,6 +20,7 @@ typedef enum vk_resource {
     VK_RESOURCE_COVERAGE,
     VK_RESOURCE_RAYS,
     VK_RESOURCE_ANSWERS,
+    VK_RESOURCE_THROUGH, /* transmittances on the way of rays */
     VK_RESOURCE_HITS,
     VK_RESOURCE_SAMPLES,
     VK_RESOURCE_SCRATCH,
@@ -65,6 +66,7 @@ typedef struct vk_facts {
     bool sky;     /* the sky, or a map, lights */
     bool given;   /* receivers are given */
     bool views;   /* shaders gather for views */
+    bool panes;   /* surfaces let light through */
     uint32_t lights, blocks_x, blocks_y;
     uint32_t tile_words; /* lists: of a tile in scratch */
     size_t list_bytes;   /* that a band of tiles may take: lists, influence */

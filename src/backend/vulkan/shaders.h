@@ -2,10 +2,13 @@
 #ifndef NOC_VULKAN_SHADERS_H
 #define NOC_VULKAN_SHADERS_H
 
-/* COMPUTE(name): shaders/name.comp. TRACE(name): shaders/name.rgen with its miss and closest-hit shader. */
-#define VK_SHADERS(COMPUTE, TRACE)                                                                                     \
+/* COMPUTE(name): shaders/name.comp. TRACE(name): shaders/name.rgen with its miss and closest-hit shader. PANES(name,
+ * of): shaders/name.rgen and its any-hit shader, with the miss and the closest-hit shader of another. */
+#define VK_SHADERS(COMPUTE, TRACE, PANES)                                                                              \
     TRACE(trace_closest)                                                                                               \
     TRACE(trace_occlusion)                                                                                             \
+    PANES(trace_meeting, trace_closest)                                                                                \
+    PANES(trace_through, trace_through)                                                                                \
     COMPUTE(primary_ask)                                                                                               \
     COMPUTE(primary_use)                                                                                               \
     COMPUTE(place)                                                                                                     \
@@ -53,6 +56,7 @@
     COMPUTE(mean)
 
 #define VK_SHADER_NAME(name) VK_SHADER_##name,
-typedef enum vk_shader { VK_SHADERS(VK_SHADER_NAME, VK_SHADER_NAME) VK_SHADER_COUNT } vk_shader;
+#define VK_PANES_NAME(name, of) VK_SHADER_##name,
+typedef enum vk_shader { VK_SHADERS(VK_SHADER_NAME, VK_SHADER_NAME, VK_PANES_NAME) VK_SHADER_COUNT } vk_shader;
 
 #endif

@@ -17,9 +17,11 @@ static void let_go(vk_device *d, vk_part *part) {
     if (!part || --part->holders)
         return;
     noc_vk_settle(d);
-    for (size_t i = 0; i < part->blas.len; i++)
-        noc_vk_free_blas(d, &part->blas.data[i]);
-    array_free(&part->blas);
+    for (int layer = 0; layer < VK_LAYERS; layer++) {
+        for (size_t i = 0; i < part->blas[layer].len; i++)
+            noc_vk_free_blas(d, &part->blas[layer].data[i]);
+        array_free(&part->blas[layer]);
+    }
     free(part);
 }
 
@@ -34,21 +36,32 @@ static void release_parts(vk_device *d, vk_parts *parts) {
     array_free(parts);
 }
 
-/* The triangles of a part, as a BLAS each BLAS_TRIANGLES. */
-static noc_status build_part(vk_world *w, uint32_t model, vk_part *part) {
-    const noc_scene *scene = w->scene;
+/* Puts the numbers of a part's triangles that are of the layer into `order`; returns how many there are. */
+static size_t triangles_of(const noc_scene *scene, uint32_t model, vk_layer layer, const vk_part *part,
+                           uint32_t *order) {
     size_t count = 0;
+    for (size_t i = part->of.first_mesh; i < part->of.end_mesh; i++) {
+        const noc_scene_mesh *m = &scene->meshes.data[i];
+        if (!noc_part_has(scene, m, model) || noc_mesh_lets_through(scene, m) != (layer == VK_LAYER_THROUGH))
+            continue;
+        for (uint32_t k = 0; k < m->triangle_count; k++)
+            order[count++] = m->first_triangle + k;
+    }
+    return count;
+}
+
+/* The triangles of a part, as a BLAS each BLAS_TRIANGLES of a layer. */
+static noc_status build_part(vk_world *w, uint32_t model, vk_part *part) {
     noc_status status = NOC_OK;
     uint32_t *order = noc_alloc_large(NOC_MAX(part->of.triangles, (size_t)1), sizeof(*order));
     if (!order)
         return noc_no_memory(w->log, "vulkan");
-    for (size_t i = part->of.first_mesh; i < part->of.end_mesh; i++) {
-        const noc_scene_mesh *m = &scene->meshes.data[i];
-        for (uint32_t k = 0; k < m->triangle_count && noc_part_has(scene, m, model); k++)
-            order[count++] = m->first_triangle + k;
+    for (vk_layer layer = VK_LAYER_SOLID; layer < VK_LAYERS; layer++) {
+        size_t count = triangles_of(w->scene, model, layer, part, order);
+        for (size_t first = 0; first < count && status == NOC_OK; first += BLAS_TRIANGLES)
+            status = noc_vk_build_blas(w, layer, order + first, NOC_MIN(count - first, (size_t)BLAS_TRIANGLES),
+                                       &part->blas[layer]);
     }
-    for (size_t first = 0; first < count && status == NOC_OK; first += BLAS_TRIANGLES)
-        status = noc_vk_build_blas(w, order + first, NOC_MIN(count - first, (size_t)BLAS_TRIANGLES), &part->blas);
     free(order);
     return status;
 }
@@ -122,11 +135,11 @@ static void free_top(vk_device *d, top *t) {
     release_parts(d, &t->held);
 }
 
-static bool add_part(top *t, vk_part *part, uint32_t instance, const float transform[12]) {
-    for (size_t i = 0; i < part->blas.len; i++) {
-        const vk_blas *b = &part->blas.data[i];
+static bool add_layer(top *t, const vk_blas_list *list, uint32_t mask, uint32_t instance, const float transform[12]) {
+    for (size_t i = 0; i < list->len; i++) {
+        const vk_blas *b = &list->data[i];
         VkAccelerationStructureInstanceKHR in = { .instanceCustomIndex = (uint32_t)t->entries.len & 0xffffff,
-                                                  .mask = 0xff,
+                                                  .mask = mask & 0xff,
                                                   .flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR,
                                                   .accelerationStructureReference = b->address };
         memcpy(in.transform.matrix, transform, sizeof(in.transform.matrix));
@@ -134,7 +147,13 @@ static bool add_part(top *t, vk_part *part, uint32_t instance, const float trans
         if (!array_push(&t->instances, in) || !array_push(&t->entries, entry))
             return false;
     }
-    if (!array_push(&t->held, part))
+    return true;
+}
+
+static bool add_part(top *t, vk_part *part, uint32_t instance, const float transform[12]) {
+    if (!add_layer(t, &part->blas[VK_LAYER_SOLID], VK_MASK_SOLID, instance, transform) ||
+        !add_layer(t, &part->blas[VK_LAYER_THROUGH], VK_MASK_THROUGH, instance, transform) ||
+        !array_push(&t->held, part))
         return false;
     held(part);
     return true;
@@ -341,11 +360,18 @@ void noc_vk_structure_destroy(vk_world *w) {
         vkDestroyDescriptorPool(d->device, s->sets, NULL);
 }
 
+static size_t bytes_of_layer(const vk_blas_list *list) {
+    size_t bytes = 0;
+    for (size_t i = 0; i < list->len; i++)
+        bytes += list->data[i].store.bytes + list->data[i].order.bytes;
+    return bytes;
+}
+
 static size_t bytes_of(const vk_parts *parts) {
     size_t bytes = 0;
     for (size_t i = 0; i < parts->len; i++)
-        for (size_t k = 0; parts->data[i] && k < parts->data[i]->blas.len; k++)
-            bytes += parts->data[i]->blas.data[k].store.bytes + parts->data[i]->blas.data[k].order.bytes;
+        for (int layer = 0; parts->data[i] && layer < VK_LAYERS; layer++)
+            bytes += bytes_of_layer(&parts->data[i]->blas[layer]);
     return bytes;
 }
 

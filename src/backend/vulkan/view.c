@@ -9,6 +9,7 @@ enum {
     COLOUR_BYTES = sizeof(cblock) / BLOCK,
     RAY_BYTES = sizeof(rayblock) / BLOCK,
     ANSWER_BYTES = 4,
+    THROUGH_BYTES = 4,
     HIT_BYTES = 20, /* triangle, entry, u, v, t */
     COVERAGE_BYTES = 16,
 };
@@ -19,10 +20,10 @@ size_t noc_vk_bytes_a_pixel(int sets, uint32_t aovs) {
 }
 
 static void free_picture(vk_device *d, vk_picture *b) {
-    vk_buffer *const buffers[] = { &b->surfaces[0], &b->surfaces[1],   &b->colour,        &b->picture,
-                                   &b->coverage,    &b->rays,          &b->answers,       &b->hits,
-                                   &b->instance,    &b->reservoirs[0], &b->reservoirs[1], &b->reservoirs[2],
-                                   &b->visible[0],  &b->visible[1],    &b->visible[2] };
+    vk_buffer *const buffers[] = { &b->surfaces[0],   &b->surfaces[1], &b->colour,        &b->picture,
+                                   &b->coverage,      &b->rays,        &b->answers,       &b->through,
+                                   &b->hits,          &b->instance,    &b->reservoirs[0], &b->reservoirs[1],
+                                   &b->reservoirs[2], &b->visible[0],  &b->visible[1],    &b->visible[2] };
     for (size_t i = 0; i < NOC_COUNT(buffers); i++)
         noc_vk_free_buffer(d, buffers[i]);
     *b = (vk_picture){ 0 };
@@ -102,22 +103,31 @@ noc_status noc_vk_view_resize(void *view, int width, int height, int sets) {
     return status;
 }
 
+/* Bytes of a ray and its answers. */
+static size_t bytes_a_ray(const vk_picture *b) {
+    return RAY_BYTES + ANSWER_BYTES + (b->through.bytes ? THROUGH_BYTES : 0);
+}
+
 static noc_status fit_rays(vk_view *v, size_t rays) {
     vk_picture *b = &v->b;
     noc_status status = noc_vk_finish_flights(v);
+    b->bytes -= b->ray_room * bytes_a_ray(b);
     noc_vk_free_buffer(v->device, &b->rays);
     noc_vk_free_buffer(v->device, &b->answers);
-    b->bytes -= b->ray_room * (RAY_BYTES + ANSWER_BYTES);
+    noc_vk_free_buffer(v->device, &b->through);
     b->ray_room = 0;
     if (status == NOC_OK)
         status = noc_vk_make_buffer(v->device, rays * RAY_BYTES, 0, VK_PLACE_DEVICE, "the rays of a frame", &b->rays);
     if (status == NOC_OK)
         status =
             noc_vk_make_buffer(v->device, rays * ANSWER_BYTES, 0, VK_PLACE_DEVICE, "the rays of a frame", &b->answers);
+    if (status == NOC_OK && v->scene->lets_through)
+        status =
+            noc_vk_make_buffer(v->device, rays * THROUGH_BYTES, 0, VK_PLACE_DEVICE, "the rays of a frame", &b->through);
     if (status != NOC_OK)
         return status;
     b->ray_room = rays;
-    b->bytes += rays * (RAY_BYTES + ANSWER_BYTES);
+    b->bytes += rays * bytes_a_ray(b);
     return NOC_OK;
 }
 
@@ -136,8 +146,8 @@ noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch) {
         return noc_error(v->log, NOC_ERR_MEMORY,
                          "vulkan: %zu rays of a frame of %d x %d are more than the device takes", rays, b->width,
                          b->height);
-    if (b->ray_room < rays)
-        status = fit_rays(v, rays);
+    if (b->ray_room < rays || (v->scene->lets_through && !b->through.bytes))
+        status = fit_rays(v, NOC_MAX(rays, b->ray_room));
     if (status == NOC_OK)
         status = noc_vk_fit_buffer(v, scratch, "scratch of a frame", &v->scratch);
     if (status == NOC_OK && v->scene->instances.len && !b->instance.bytes)

@@ -54,6 +54,9 @@ typedef struct vk_pipeline {
     VkStridedDeviceAddressRegionKHR raygen, miss, hit;
 } vk_pipeline;
 
+/* Stages that read the push constant, the address of a dispatch's record. */
+#define VK_PUSH_STAGES (VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR)
+
 /* Specialization constants of all compute shaders, by their numbers; set before pipelines are made. */
 typedef struct vk_constants {
     uint32_t list_workers, share_workers; /* invocations of a work group: of a tile's list, of the choice of rays */
@@ -126,9 +129,12 @@ typedef NOC_ARRAY(vk_blas) vk_blas_list;
 
 /* ---- structure.c ---- */
 
+/* Surfaces that block light, and those that let it through: each kind in BLASes of its own. */
+typedef enum vk_layer { VK_LAYER_SOLID, VK_LAYER_THROUGH, VK_LAYERS } vk_layer;
+
 typedef struct vk_part {
     noc_part of;
-    vk_blas_list blas;
+    vk_blas_list blas[VK_LAYERS];
     int holders;
 } vk_part;
 
@@ -175,6 +181,7 @@ typedef struct vk_world {
     vk_structure structure;
     vk_array positions, indices, triangle_material, triangle_light, materials, lights, profiles, texels;
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
+    vk_array panes;                       /* of each material; none: no surface lets light through */
     vk_array instances, instance_lights, backs;
     vk_array backdrop, environment, environment_slots, environment_sines;
     vk_array alias, tree, clusters, volumes;
@@ -215,6 +222,7 @@ typedef struct vk_picture {
     vk_buffer surfaces[2], reservoirs[NOC_RESERVOIR_SETS], visible[NOC_RESERVOIR_SETS];
     vk_buffer colour, picture, coverage;
     vk_buffer rays, answers, hits; /* hits: one a pixel */
+    vk_buffer through;             /* transmittance on the way of each ray; none: no surface lets light through */
     vk_buffer instance;            /* that each pixel sees; none: the scene has had none */
     size_t bytes;
 } vk_picture;
@@ -364,8 +372,8 @@ noc_status noc_vk_pipeline(vk_device *d, vk_shader shader, const vk_pipeline **p
 
 /* blas.c */
 /* Builds a BLAS of so many triangles, whose numbers in the scene it puts in the order of the BLAS, and appends it to
- * the list; on failure what is appended is to be freed, too. */
-noc_status noc_vk_build_blas(vk_world *w, uint32_t *order, size_t count, vk_blas_list *list);
+ * the layer's list; on failure what is appended is to be freed, too. */
+noc_status noc_vk_build_blas(vk_world *w, vk_layer layer, uint32_t *order, size_t count, vk_blas_list *list);
 void noc_vk_free_blas(vk_device *d, vk_blas *b); /* no command in flight may use it */
 /* A structure of this type in `bytes` bytes of a buffer, from byte `at` on, a multiple of 256. */
 noc_status noc_vk_make_structure(vk_device *d, VkAccelerationStructureTypeKHR type, const vk_buffer *store,

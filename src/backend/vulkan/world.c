@@ -48,7 +48,7 @@ static noc_status fill(vk_world *w, vk_array *a, const void *data, size_t bytes,
 
 static const noc_range nothing = { 0, 0 };
 
-enum { VK_ARRAYS = 21 };
+enum { VK_ARRAYS = 22 };
 static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
     vk_array *const all[] = { &w->positions,
                               &w->indices,
@@ -60,6 +60,7 @@ static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
                               &w->texels,
                               &w->image_places,
                               &w->image_corners,
+                              &w->panes,
                               &w->instances,
                               &w->instance_lights,
                               &w->backs,
@@ -170,19 +171,36 @@ static noc_status fill_image_places(vk_world *w) {
     return status;
 }
 
+static noc_status fill_panes(vk_world *w) {
+    const noc_scene *s = w->scene;
+    if (!s->lets_through)
+        return NOC_OK;
+    vk_pane_record *panes = noc_calloc(s->materials.len, sizeof(*panes));
+    if (!panes)
+        return noc_no_memory(w->log, "vulkan");
+    for (size_t i = 0; i < s->materials.len; i++) {
+        const noc_material *m = &s->materials.data[i];
+        panes[i].transmittance = m->transmittance;
+        if (m->cutout && m->texture && s->uv.len)
+            panes[i].holes = s->textures.data[m->texture - 1].place + 1;
+    }
+    size_t bytes = s->materials.len * sizeof(*panes);
+    noc_status status = fill(w, &w->panes, panes, bytes, 0, bytes, 0, "materials");
+    free(panes);
+    return status;
+}
+
 static noc_status follow_materials(vk_world *w) {
     const noc_scene *s = w->scene;
-    if (s->lets_through)
-        return noc_error(w->log, NOC_ERR_UNSUPPORTED,
-                         "vulkan: the scene has surfaces that let light through, which embree alone renders "
-                         "(--backend embree)");
     if (w->filled && w->seen.materials == s->versions.materials && w->seen.geometry == s->versions.geometry)
         return NOC_OK;
     noc_status status =
         FILL(materials, s->material_records, since(w, s->dirty_materials, s->material_records.len), "materials");
     if (status == NOC_OK)
         status = FILL(texels, s->texels, nothing, "textures");
-    return status == NOC_OK ? fill_image_places(w) : status;
+    if (status == NOC_OK)
+        status = fill_image_places(w);
+    return status == NOC_OK ? fill_panes(w) : status;
 }
 
 static noc_status follow_lights(vk_world *w) {

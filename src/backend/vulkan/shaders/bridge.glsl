@@ -45,6 +45,7 @@ ARRAY(Materials, material_record)
 ARRAY(Floats, float)
 ARRAY(Words, uint)
 ARRAY(Instances, vk_instance_record)
+ARRAY(Panes, vk_pane_record)
 ARRAY(Backs, placing_back)
 
 /* vk_entry */

@@ -5,6 +5,7 @@
 #include "pixel.glsl"
 #include "list_rays.glsl"
 #include "surfaces.glsl"
+#include "weaken.glsl"
 
 void main() {
     if (!in_grid())
@@ -21,6 +22,7 @@ void main() {
         if (!(w > 0.0))
             continue;
         EXACT float weight = w * rest;
+        weight = weakened(weight, k * HERE.slots + pixel_);
         c = add_colour(c, mul3(ray_brings(k), weight), p.slot);
     }
     colour_put(HERE.colour, p, c);

@@ -6,6 +6,7 @@
 #include "list_rays.glsl"
 #include "surfaces.glsl"
 #include "views.glsl"
+#include "weaken.glsl"
 
 void main() {
     if (!in_grid())
@@ -19,6 +20,7 @@ void main() {
         if (!(found_w(k) > 0.0))
             continue;
         EXACT float w = found_w(k) * rest;
+        w = weakened(w, k * HERE.slots + pixel_);
         reservoir q = list_sample(key, ray_entry(k), w, found_p(k), 0.0);
         note_sample(p, s, q, light_load(q.light), mul3(ray_brings(k), w));
     }

@@ -4,24 +4,15 @@
 #include "bridge.glsl"
 #include "pixel.glsl"
 
-uint texel_load(uint place) { return HERE.texels.at[place]; }
-
+#include "images.glsl"
 #include "core/primary.h"
-
-vec2 corner_in_image(uint vertex) {
-    return vec2(uintBitsToFloat(HERE.image_corners.at[2u * vertex]),
-                uintBitsToFloat(HERE.image_corners.at[2u * vertex + 1u]));
-}
 
 /* The albedo that a texture gives the receiver r, 0: none. */
 uint texel_of(ray_hit h, receiver r, place p, uvec3 vertex, bool placed, placement m) {
     uint image = HERE.image_places.at[h.material];
-    if (image == 0u || HERE.image_corners.at[2u * vertex.x] == 0xffffffffu)
-        return 0u;
     image_corners at;
-    vec2 a = corner_in_image(vertex.x), b = corner_in_image(vertex.y), c = corner_in_image(vertex.z);
-    at.u = vec3(a.x, b.x, c.x);
-    at.v = vec3(a.y, b.y, c.y);
+    if (image == 0u || !find_corners(vertex, at))
+        return 0u;
     uint x = p.x & ~3u, y = p.y & ~3u;
     float apart2 = rays_apart2(frame_direction(x, y), frame_direction(x, y + 1u));
     float width = hit_width(h, r.n, apart2, placed ? placement_scale2(m) : 1.0);
@@ -38,8 +29,7 @@ void main() {
     if (p.inside && number != NO_HIT) {
         tlas_entry e = HERE.entries.at[HERE.hits.at[b].entry[l]];
         triangle = e.order.at[number];
-        uvec3 vertex = uvec3(HERE.indices.at[3u * triangle], HERE.indices.at[3u * triangle + 1u],
-                             HERE.indices.at[3u * triangle + 2u]);
+        uvec3 vertex = vertices_of(triangle);
         ray_hit h;
         h.at.a = three_of(HERE.positions, vertex.x);
         h.at.b = three_of(HERE.positions, vertex.y);

@@ -5,6 +5,7 @@
 #include "pixel.glsl"
 #include "reference.glsl"
 #include "views.glsl"
+#include "weaken.glsl"
 
 void main() {
     if (!in_grid())
@@ -19,6 +20,7 @@ void main() {
         float w = uintBitsToFloat(HERE.scratch.at[entry_word(entry, 1u)]);
         if ((FRAME.flags & FRAME_FINAL_RAY) != 0u && HERE.answers.at[i * HERE.slots + p.slot] != VK_ANSWER_CLEAR)
             continue;
+        w = weakened(w, i * HERE.slots + p.slot);
         uint id = HERE.scratch.at[entry_word(entry, 0u)];
         v3 at = reference_place(key_at(p, FRAME.index), id);
         reservoir q = reservoir(id, at.x, at.y, w, 0.0, 0.0);

@@ -1,5 +1,5 @@
 #version 460
-/* A ray from each pixel to its sample, where it is not known whether it arrives. */
+/* A ray from each pixel to its sample, where it is not known whether it arrives. HERE.first 1: to all samples. */
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
@@ -11,7 +11,7 @@ void main() {
         return;
     place p = my_place();
     reservoir q = reservoir_at(HERE.target, p.block, p.lane);
-    bool ask = resolve_asks(q, HERE.target_visible.at[p.slot] != 0u);
+    bool ask = resolve_asks(q, HERE.first == 0u && HERE.target_visible.at[p.slot] != 0u);
     segment s;
     s.o = s.d = vec3(0.0);
     if (ask) {

@@ -8,6 +8,7 @@
 #include "core/shading.h"
 #include "surfaces.glsl"
 #include "views.glsl"
+#include "weaken.glsl"
 
 void main() {
     if (!in_grid())
@@ -19,6 +20,7 @@ void main() {
         on = HERE.answers.at[p.slot] != VK_ANSWER_WANTED;
     if (!on)
         return;
+    q.w = weakened(q.w, p.slot);
     if ((HERE.list_flags & LIST_MIXES) != 0u) {
         EXACT float w = q.w * list_reused(q.m, float(FRAME.draws));
         q.w = w;

@@ -17,6 +17,10 @@ void main() {
     vec3 way = vec3(HERE.rays.at[p.block].d[0][p.lane], HERE.rays.at[p.block].d[1][p.lane],
                     HERE.rays.at[p.block].d[2][p.lane]);
     EXACT float share = 1.0 / float(answer >> 8);
+    if (HERE.weakens != 0u) {
+        EXACT float rest = share * HERE.through.at[p.slot];
+        share = rest;
+    }
     surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
     vec3 light = sky_shade(s, way, share);
     if (measures(p))
