@@ -53,10 +53,9 @@ for way in "--smooth --segment 4" "" "--method restir --no-spatial --segment 4" 
 done
 test "$(meta smooth.png smoothed)" = "for display" && test -z "$(meta whole/05.png smoothed)"
 result $? "smoothed pictures say so, and no others do"
-env --default-signal=INT "$program" render builtin:city --city-size 150 --size 64x36 --exposure 3 \
-    --animate --frames 1000 --samples 1 -v -o long-%d.exr >out 2>err </dev/null &
-pid=$!
-until grep -q 'long-2.exr' err || ! kill -0 $pid; do sleep 0.1; done
+start render builtin:city --city-size 150 --size 64x36 --exposure 3 --animate --frames 1000 --samples 1 -v \
+    -o long-%d.exr
+until grep -qs 'long-2.exr' err || ! kill -0 $pid; do sleep 0.1; done
 kill -INT $pid
 wait $pid
 test $? = 130 && grep -Eq 'interrupted: [0-9]+ of 1000 pictures are there' err; result $? "Ctrl-C says how far it came"
@@ -134,9 +133,7 @@ rm -r there/d.mp4 there/d-*
 printf '#!/bin/sh\ntouch started\nsleep 1000\n' >bin/ffmpeg
 interrupted_film() {
     rm -f started
-    PATH=$PWD/bin:$path env --default-signal=INT "$program" render lamp.yaml --animate --frames 3 --samples 1 \
-        -o there/s-%d.png --mp4 >out 2>err </dev/null &
-    pid=$!
+    PATH=$PWD/bin:$path start render lamp.yaml --animate --frames 3 --samples 1 -o there/s-%d.png --mp4
     tries=0
     until test -e started || test $tries -gt 600; do sleep 0.1; tries=$((tries + 1)); done
     kill -INT $pid

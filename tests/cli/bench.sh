@@ -114,10 +114,8 @@ if [ -w /dev/full ]; then
 fi
 
 # Ctrl-C: tables that were complete are there, the one at work is not.
-env --default-signal=INT "$program" bench --quick --only threads,isa --threads 1 --size 32x18 --frames 1000 --time 0 \
-    -o cut.json >out 2>err </dev/null &
-pid=$!
-until grep -q '^threads' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
+start bench --quick --only threads,isa --threads 1 --size 32x18 --frames 1000 --time 0 -o cut.json
+until grep -qs '^threads' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
 kill -INT $pid
 wait $pid
 status=$?
@@ -129,10 +127,8 @@ assert not d["complete"] and list(d["tables"]) == ["threads"] and d["tables"]["t
 result $? "with what was complete" "$(tail -n 1 why)"
 ls | grep -q new$; test $? = 1; result $? "and nothing half-written"
 echo kept >kept.json
-env --default-signal=INT "$program" bench --only floor --size 320x180 --frames 1000 --time 0 -o kept.json \
-    >out 2>err </dev/null &
-pid=$!
-until grep -q '^Pictures' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
+start bench --only floor --size 320x180 --frames 1000 --time 0 -o kept.json
+until grep -qs '^Pictures' out || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
 kill -INT $pid
 wait $pid
 status=$?

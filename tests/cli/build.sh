@@ -157,8 +157,7 @@ run build nothing.gml -o none.noct
 [ "$status" = 1 ] && [ ! -e none.noct ] && [ -z "$(find . -name '*.part')" ]
 result $? "a build that fails leaves nothing"
 mkdir there
-env --default-signal=INT "$program" build builtin:city --city-size 1500 -o there/big.noct >out 2>err </dev/null &
-pid=$!
+start build builtin:city --city-size 1500 -o there/big.noct
 until [ -n "$(ls -A there)" ] || ! kill -0 $pid 2>err; do sleep 0.05; done
 kill -INT $pid
 wait $pid

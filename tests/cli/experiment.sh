@@ -178,9 +178,7 @@ result $? "those that were there are kept as they were"
 stop() {
     signal=$1 reached=$2
     shift 2
-    : >out
-    env --default-signal=INT "$program" experiment "$@" >out 2>err </dev/null &
-    pid=$!
+    start experiment "$@"
     tries=0
     until eval "$reached" || ! kill -0 $pid 2>/dev/null; do
         tries=$((tries + 1))
@@ -210,7 +208,7 @@ cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d
 
 # Ctrl-C while a reference is made: what is lost is told.
 sed 's/"rays": 8, "frames": 2/"rays": 64, "frames": 100000/' short.json >endless.json
-stop INT "grep -q 'reference, about' out" endless.json -o lost --cache cache
+stop INT "grep -qs 'reference, about' out" endless.json -o lost --cache cache
 test $status = 130 && grep -Eq 'goes on there, but begins this reference anew: the [0-9,]+ frames? of 100000 that' err
 result $? "Ctrl-C in a reference says that its frames are lost" "$(cat err)"
 

@@ -6,12 +6,9 @@
 interrupt() {
     signal=$1 when=$2
     shift 2
-    : >err
-    # A shell makes its background jobs ignore SIGINT, and nohup SIGHUP; what is ignored stays so.
-    env --default-signal=HUP,INT,TERM "$program" "$@" >out 2>err </dev/null &
-    pid=$!
+    start "$@"
     tries=0
-    until grep -q "$when" err; do
+    until grep -qs "$when" err; do
         tries=$((tries + 1))
         [ $tries -gt 1200 ] && break
         kill -0 $pid 2>/dev/null || break

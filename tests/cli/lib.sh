@@ -32,6 +32,14 @@ run() {
     status=$?
 }
 
+# start ARGUMENT...: the program in the background, as $pid. What it prints cannot be taken for the last one's. A shell
+# makes its background jobs ignore SIGINT, and nohup SIGHUP; what is ignored stays so.
+start() {
+    rm -f out err
+    env --default-signal=HUP,INT,TERM "$program" "$@" >out 2>err </dev/null &
+    pid=$!
+}
+
 # expect NAME STATUS PATTERN ARGUMENT...: ends with this status, and says what matches the (extended) pattern on stderr
 expect() {
     name=$1 expected=$2 pattern=$3

@@ -476,9 +476,9 @@ def test_a_browser_is_given_no_secret_in_its_arguments(p):
         view.terminate()
         view.wait()
         assert not os.path.exists(page), page
-        # ended while a city of 1.5 km is built, which it does not wait for
+        # ended while a city of 5 km is built, for some seconds, which it does not wait for
         os.unlink(os.path.join(folder, "arguments"))
-        view = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:city", "--city-size", "1500", "--port",
+        view = subprocess.Popen([os.environ["NOC_PROGRAM"], "view", "builtin:city", "--city-size", "5000", "--port",
                                  "0", "--open"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                 env=environment)
         view.stdout.readline()
