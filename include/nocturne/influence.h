@@ -201,14 +201,18 @@ typedef struct noc_influence_kind {
     size_t emitters; /* of it, that were found to bring anything */
 } noc_influence_kind;
 
-/* All in all. */
+/* All that counts: lights of every kind and the sky, but windows only where params count them. */
 typedef struct noc_influence_sum {
-    noc_estimate lux; /* of all lights and the sky */
+    noc_estimate lux;
+    bool windows_counted; /* noc_ranking_params.count_windows */
     noc_estimate sky, sky_share;
-    noc_influence_kind kinds[NOC_EMITTER_KIND_COUNT]; /* by noc_emitter_kind; they and the sky are all */
-    noc_estimate rest, rest_share;                    /* of emitters beyond the rows that were asked for */
-    size_t emitters;                                  /* that were found to bring anything */
-    /* where params have an eye: mean luminance towards it of the light that the region reflects, cd/m2; else 0 */
+    /* By noc_emitter_kind: lamps are kinds[NOC_EMITTER_LAMP]. Those that count and the sky are all. Windows are
+     * estimated in any case; where they do not count, their share is NaN. */
+    noc_influence_kind kinds[NOC_EMITTER_KIND_COUNT];
+    noc_estimate rest, rest_share; /* of emitters beyond the rows that were asked for */
+    size_t emitters;               /* that count and were found to bring anything */
+    /* where params have an eye: mean luminance towards it of what the region reflects of light that counts, cd/m2; else
+     * 0 */
     noc_estimate luminance;
     uint64_t samples, rays; /* points that were looked at, shadow rays that were traced */
     double seconds;         /* that it took, wall clock */
@@ -217,9 +221,10 @@ typedef struct noc_influence_sum {
 
 /* What surfaces of one class of the region get: a building's walls. */
 typedef struct noc_influence_class {
-    noc_class cls;    /* NOC_CLASS_OTHER of parts without a material */
-    double weight;    /* of its parts: m2 of a surface */
-    noc_estimate lux; /* mean illuminance over them; NaN: no sample fell on it yet */
+    noc_class cls;               /* NOC_CLASS_OTHER of parts without a material */
+    double weight;               /* of its parts: m2 of a surface */
+    noc_estimate lux;            /* mean illuminance over them by all that counts; NaN: no sample fell on it yet */
+    noc_estimate lamps, windows; /* the same by lamps alone, by windows alone */
 } noc_influence_class;
 
 typedef struct noc_ranking noc_ranking;
@@ -228,13 +233,16 @@ typedef struct noc_ranking_params {
     /* what lights beside the lamps: sky, environment_*; and isa and seed; NULL: the defaults */
     const noc_render_params *render;
     const double *eye; /* local metres: whose luminance is asked for; NULL, the default: nobody's */
+    /* Windows count in the sums, the shares and the rows. false, the default: their illuminance stands beside the sums,
+     * because a plan of street lighting may not rely on windows. */
+    bool count_windows;
 } noc_ranking_params;
 
 /* When refining may stop: at the first of those that are above 0, and never before the standard errors mean
  * something. */
 typedef struct noc_ranking_target {
     double seconds; /* wall clock, of this call */
-    double error;   /* relative standard error of the greatest emitter's share */
+    double error;   /* relative standard error of the greatest share of an emitter that counts */
     uint64_t rays;  /* of all calls */
 } noc_ranking_target;
 
@@ -251,11 +259,10 @@ NOC_API void noc_ranking_destroy(noc_ranking *ranking); /* NULL is allowed */
 NOC_API noc_status noc_ranking_refine(noc_ranking *ranking, const noc_ranking_target *target,
                                       const noc_progress *progress);
 
-/* The first `count` emitters by what they bring, the strongest first, into rows (NULL with a count of 0), and what all
- * bring into sum (may be NULL). *found gets how many rows were filled; fewer where fewer emitters bring anything. Where
- * lights were added or removed since the last round, emitters have no names and no
- * places, and distances are NaN.
- * NOC_ERR_ARGUMENT: nothing was estimated yet; NOC_ERR_MEMORY. */
+/* The first `count` emitters that count by what they bring, the strongest first, into rows (NULL with a count of 0),
+ * and what all bring into sum (may be NULL). *found gets how many rows were filled; fewer where fewer emitters bring
+ * anything. Where lights were added or removed since the last round, emitters have no names and no places, and
+ * distances are NaN. NOC_ERR_ARGUMENT: nothing was estimated yet; NOC_ERR_MEMORY. */
 NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows, size_t count, size_t *found,
                                    noc_influence_sum *sum);
 
@@ -265,10 +272,11 @@ NOC_API noc_status noc_ranking_get(noc_ranking *ranking, noc_influence_row *rows
 NOC_API noc_status noc_ranking_get_classes(noc_ranking *ranking, noc_influence_class *classes, size_t count,
                                            size_t *found);
 
-/* These rows, then what the kinds of emitters bring, the sky, the sum and what classes of surfaces get (if there are
- * any: m2 of them and of all, too), as CSV with a head of names: what nocturne influence --csv writes. Places are in
- * the scene's CRS, which the column crs names, local metres where it has none; the report, which may be NULL, tells of
- * lamps. free() it. NULL: no memory, or a pointer that should not be NULL, which is reported. */
+/* These rows, then what the kinds of emitters bring (lamps first, then windows), the sky, the sum and what classes of
+ * surfaces get (if there are any: m2 of them and of all, too), as CSV with a head of names: what nocturne influence
+ * --csv writes. Places are in the scene's CRS, which the column crs names, local metres where it has none; the report,
+ * which may be NULL, tells of lamps. free() it. NULL: no memory, or a pointer that should not be NULL, which is
+ * reported. */
 NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
                                 size_t count, const noc_influence_sum *sum, const noc_influence_class *classes,
                                 size_t class_count);

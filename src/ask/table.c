@@ -54,18 +54,34 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
     csv_text(out, lamp ? lamp->profile : "");
     putc(',', out);
     csv_text(out, info.given_crs);
-    putc('\n', out);
+    fputs(",,,,\n", out);
 }
 
-/* A line that is no light's. area: of what gets it, m2; NaN: that is no area. */
-static void csv_rest(FILE *out, const char *name, const char *kind, noc_estimate lux, noc_estimate share, double area) {
+#define NO_ESTIMATE ((noc_estimate){ NAN, NAN })
+
+/* A line of a sum. area: of the surfaces that get it, m2; NaN: none. parts: by lamps and by windows; NULL: none. */
+static void csv_sum(FILE *out, const char *name, const char *kind, noc_estimate lux, noc_estimate share, double area,
+                    const noc_estimate parts[2]) {
     const double numbers[] = { lux.value, lux.error, share.value, share.error };
     fprintf(out, ",\"%s\",\"%s\",\"\"", name, kind);
     for (int k = 0; k < 4; k++)
         csv_number(out, numbers[k], -1);
     fputs(",,,,,,,\"\",\"\",\"\",\"\"", out);
     csv_number(out, area, -1);
-    fputs(",\"\"\n", out);
+    fputs(",\"\"", out);
+    for (int k = 0; k < 2; k++) {
+        csv_number(out, parts ? parts[k].value : NAN, -1);
+        csv_number(out, parts ? parts[k].error : NAN, -1);
+    }
+    putc('\n', out);
+}
+
+/* Lamps and windows in any case, the first two; of other kinds those that bring anything. */
+static void csv_kinds(FILE *out, const noc_influence_sum *sum) {
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
+        if (k <= NOC_EMITTER_WINDOW || sum->kinds[k].emitters)
+            csv_sum(out, noc_emitter_kind_name((noc_emitter_kind)k), "kind", sum->kinds[k].lux, sum->kinds[k].share,
+                    NAN, NULL);
 }
 
 char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows, size_t count,
@@ -81,21 +97,19 @@ char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const 
     if (!out)
         return NULL;
     fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile,"
-          "area,crs\n",
+          "area,crs,lamps_lux,lamps_lux_error,windows_lux,windows_lux_error\n",
           out);
     for (size_t i = 0; i < count; i++)
         csv_row(out, scene, report, &rows[i], i + 1);
     for (size_t i = 0; i < class_count; i++)
         area += classes[i].weight;
-    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
-        if (sum->kinds[k].emitters)
-            csv_rest(out, noc_emitter_kind_name((noc_emitter_kind)k), "kind", sum->kinds[k].lux, sum->kinds[k].share,
-                     NAN);
-    csv_rest(out, "", "sky", sum->sky, sum->sky_share, NAN);
-    csv_rest(out, "", "all", sum->lux, (noc_estimate){ 1, 0 }, area);
+    csv_kinds(out, sum);
+    csv_sum(out, "", "sky", sum->sky, sum->sky_share, NAN, NULL);
+    csv_sum(out, sum->windows_counted ? "windows counted" : "without windows", "all", sum->lux, (noc_estimate){ 1, 0 },
+            area, (const noc_estimate[]){ sum->kinds[NOC_EMITTER_LAMP].lux, sum->kinds[NOC_EMITTER_WINDOW].lux });
     for (size_t i = 0; i < class_count; i++)
-        csv_rest(out, noc_class_name(classes[i].cls), "class", classes[i].lux, (noc_estimate){ NAN, NAN },
-                 classes[i].weight);
+        csv_sum(out, noc_class_name(classes[i].cls), "class", classes[i].lux, NO_ESTIMATE, classes[i].weight,
+                (const noc_estimate[]){ classes[i].lamps, classes[i].windows });
     bool bad = ferror(out);
     if (fclose(out) || bad) {
         free(text);

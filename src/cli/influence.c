@@ -12,6 +12,8 @@ static const noc_option own_options[] = {
       "of an object: surfaces of these classes alone, such as wall,roof" },
     { "lamp", "Influence", NOC_OPTION_TEXT, offsetof(A, lamp), 0, 0, NULL, "ID",
       "instead of a region: a lamp, what is known of it, and what it lights" },
+    { "count-windows", "Influence", NOC_OPTION_BOOL, offsetof(A, count_windows), 0, 1, NULL, "",
+      "windows count in sums, shares and rows; their lux is told in any case" },
     { "top", "Influence", NOC_OPTION_INT, offsetof(A, top), 1, 1000000, NULL, "", "rows: the strongest so many" },
     { "csv", "Influence", NOC_OPTION_TEXT, offsetof(A, csv), 0, 0, NULL, "FILE",
       "write all rows as CSV, too; - = instead of the table" },
@@ -169,7 +171,7 @@ static noc_status ask_region(influence_job *job) {
                              .height = render->render.height,
                              .classes = args->class_bits,
                              .files = true };
-    noc_ranking_params params = { &render->render, has_eye(job->asked) ? job->camera.eye : NULL };
+    noc_ranking_params params = { &render->render, has_eye(job->asked) ? job->camera.eye : NULL, args->count_windows };
     noc_ranking_target target = { .seconds = args->time, .error = args->error };
     noc_progress progress = { show, job };
     job->region = noc_region_find(job->view, job->scene, job->asked, &of, job->log);

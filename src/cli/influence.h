@@ -10,7 +10,7 @@ typedef struct influence_args {
     noc_texts regions;
     const char *lamp, *csv, *classes;
     uint32_t class_bits; /* of classes; 0: the library's */
-    bool json;
+    bool json, count_windows;
     int top;
     double time, error; /* s; relative */
 } influence_args;

@@ -62,27 +62,34 @@ static void print_row(const influence_job *job, const noc_influence_row *row) {
     print_name(row, &t);
 }
 
+static void print_known(noc_estimate e, bool share) {
+    if (isfinite(e.value))
+        print_estimate(e, share);
+    else
+        printf(share ? " %6s %6s" : " %9s %9s", "-", "");
+}
+
 static void print_rest(const char *name, noc_estimate lux, noc_estimate share) {
     print_estimate(lux, false);
-    print_estimate(share, true);
+    print_known(share, true);
     printf("  %s\n", name);
 }
 
 static void print_classes(const influence_job *job) {
     if (!job->class_count)
         return;
-    printf("%10s%9s %9s  %s\n", "lx", "", "m2", "of its surfaces");
+    printf("%11s%9s%10s%10s%15s%5s %9s  %s\n", "lx by lamps", "", "by windows", "",
+           job->sum.windows_counted ? "by all" : "without windows", "", "m2", "of its surfaces");
     for (size_t i = 0; i < job->class_count; i++) {
         const noc_influence_class *c = &job->classes[i];
-        if (isfinite(c->lux.value))
-            print_estimate(c->lux, false);
-        else
-            printf(" %9s %9s", "-", "");
+        print_known(c->lamps, false);
+        print_known(c->windows, false);
+        print_known(c->lux, false);
         printf(" %9.*f  %s\n", c->weight < 100 ? 1 : 0, c->weight, noc_class_name(c->cls));
     }
 }
 
-/* The sums by kind of light, the strongest first; their shares are 100 %. */
+/* The sums by kind of light: lamps, windows, then the strongest first. Shares of those that count are 100 %. */
 static void print_kinds(const noc_influence_sum *s) {
     static const char *const nouns[] = { [NOC_EMITTER_LAMP] = "lamp",
                                          [NOC_EMITTER_WINDOW] = "window",
@@ -95,7 +102,8 @@ static void print_kinds(const noc_influence_sum *s) {
     for (;;) {
         int best = -1;
         for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
-            if (!done[k] && s->kinds[k].emitters && (best < 0 || s->kinds[k].lux.value > s->kinds[best].lux.value))
+            if (!done[k] && s->kinds[k].emitters &&
+                (best < 0 || (best > NOC_EMITTER_WINDOW && s->kinds[k].lux.value > s->kinds[best].lux.value)))
                 best = k;
         if (best < 0)
             break;
@@ -104,6 +112,19 @@ static void print_kinds(const noc_influence_sum *s) {
     }
     if (s->sky.value > 0)
         print_rest("sky", s->sky, s->sky_share);
+}
+
+/* Lamps first, windows beside them, then the sum of what counts. */
+static void print_parts(const noc_influence_sum *s) {
+    static const char *const nouns[] = { "lamp", "window" };
+    char a[64], b[64];
+    for (int k = NOC_EMITTER_LAMP; k <= NOC_EMITTER_WINDOW; k++)
+        printf("%s lx ± %.2g by %s%s\n", cli_number(a, s->kinds[k].lux.value), s->kinds[k].lux.error,
+               noc_text_many(b, s->kinds[k].emitters, nouns[k]),
+               k == NOC_EMITTER_LAMP || s->windows_counted ? "" : ", not counted below (--count-windows)");
+    printf("%s lx ± %.2g by %s%s%s\n", cli_number(a, s->lux.value), s->lux.error,
+           noc_text_many(b, s->emitters, "light"), s->sky.value > 0 ? " and the sky" : "",
+           s->windows_counted ? "" : ", without windows");
 }
 
 static noc_status print_table(influence_job *job) {
@@ -116,13 +137,12 @@ static noc_status print_table(influence_job *job) {
     noc_text_clean(region, sizeof(region), job->asked);
     printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
            *job->info.given_crs ? job->info.given_crs : "local metres");
-    printf("%s lx ± %.2g by %s%s\n", cli_number(a, s->lux.value), s->lux.error, noc_text_many(b, s->emitters, "light"),
-           s->sky.value > 0 ? " and the sky" : "");
+    print_parts(s);
     if (s->luminance.value > 0)
-        printf("%s cd/m2 ± %.2g towards the camera, without what shines itself\n", cli_number(a, s->luminance.value),
-               s->luminance.error);
+        printf("%s cd/m2 ± %.2g towards the camera of this, without what shines itself\n",
+               cli_number(a, s->luminance.value), s->luminance.error);
     print_classes(job);
-    if (s->lux.value > 0)
+    if (s->lux.value > 0 || s->kinds[NOC_EMITTER_WINDOW].lux.value > 0)
         print_kinds(s);
     if (job->count)
         printf("%10s%9s %7s %6s   %-8s %8s %8s %6s  %s\n", "lx", "", "share %", "", "kind", "m away", "lm", "K",
@@ -224,6 +244,10 @@ static noc_status print_json(influence_job *job) {
     cli_json_text(stdout, job->asked);
     json_text("crs", job->info.given_crs);
     printf(",\n ");
+    json_estimate("lamps", s->kinds[NOC_EMITTER_LAMP].lux);
+    printf(",\n ");
+    json_estimate("windows", s->kinds[NOC_EMITTER_WINDOW].lux);
+    printf(", \"windows_counted\": %s,\n ", s->windows_counted ? "true" : "false");
     json_estimate("lux", s->lux);
     printf(",\n ");
     json_estimate("sky", s->sky);
@@ -245,6 +269,10 @@ static noc_status print_json(influence_job *job) {
     for (size_t i = 0; i < job->class_count; i++) {
         printf("%s    {\"class\": \"%s\"", i ? ",\n" : "\n", noc_class_name(job->classes[i].cls));
         json_number("area", job->classes[i].weight);
+        printf(", ");
+        json_estimate("lamps", job->classes[i].lamps);
+        printf(", ");
+        json_estimate("windows", job->classes[i].windows);
         printf(", ");
         json_estimate("lux", job->classes[i].lux);
         printf("}");

@@ -63,6 +63,7 @@ noc_ranking *noc_ranking_create(noc_view *view, const noc_region *region, const 
     r->params = render;
     r->point = region->patches.len == 1 && noc_patch_is_point(&region->patches.data[0]);
     r->seen = params->eye != NULL;
+    r->count_windows = params->count_windows;
     for (int k = 0; k < 3 && params->eye; k++)
         r->eye[k] = (float)params->eye[k];
     share_samples(r);

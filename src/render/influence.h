@@ -22,10 +22,14 @@ typedef struct ranking_sums {
     size_t len, cap;   /* a power of two */
 } ranking_sums;
 
+/* What brings light: the kinds of emitters, and the sky. */
+enum { RANKING_SKY = NOC_EMITTER_KIND_COUNT, RANKING_PARTS };
+
 typedef struct ranking_batch {
     ranking_sums sums;
-    double all, sky, luminance;                           /* sums over samples */
-    double lux[NOC_CLASS_COUNT], points[NOC_CLASS_COUNT]; /* the same of each class; what its samples stood for */
+    double lux[RANKING_PARTS][NOC_CLASS_COUNT]; /* sums over samples, by what brings it and the surface's class */
+    double luminance[2];                        /* by windows [1], and by all else */
+    double points[NOC_CLASS_COUNT];             /* number of samples of each class, weighted by noc_ranking.counts */
     uint64_t rays;
     bool refused; /* memory */
 } ranking_batch;
@@ -54,7 +58,8 @@ struct noc_ranking {
     double counts[NOC_CLASS_COUNT]; /* what a sample of each class counts: its weight over its samples */
     bool point;
     noc_render_params params;
-    bool seen; /* somebody's luminance is asked for */
+    bool seen;          /* somebody's luminance is asked for */
+    bool count_windows; /* noc_ranking_params */
     float eye[3];
     frame_constants frame;
     noc_emitters emitters;

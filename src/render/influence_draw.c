@@ -50,12 +50,10 @@ static void flush(drawing *d) {
         double lux = a->lux * clear[i];
         if (!(clear[i] > 0))
             continue;
-        b->all += lux;
-        b->lux[a->cls] += lux;
-        b->luminance += a->luminance * clear[i];
-        if (a->emitter == NOC_NO_EMITTER)
-            b->sky += lux;
-        else if (!noc_sums_add(&b->sums, a->emitter, lux))
+        int part = a->emitter == NOC_NO_EMITTER ? RANKING_SKY : (int)d->r->emitters.all.data[a->emitter].kind;
+        b->lux[part][a->cls] += lux;
+        b->luminance[part == NOC_EMITTER_WINDOW] += a->luminance * clear[i];
+        if (part != RANKING_SKY && !noc_sums_add(&b->sums, a->emitter, lux))
             b->refused = true;
     }
     d->count = 0;

@@ -93,33 +93,38 @@ static spread spread_of(const noc_ranking *r, uint32_t emitter) {
     return s;
 }
 
+/* Returns true if light of this kind, or of RANKING_SKY, is part of the sums. */
+static bool counts(const noc_ranking *r, int part) { return part != NOC_EMITTER_WINDOW || r->count_windows; }
+
 typedef struct totals {
-    spread all, sky, luminance, kinds[NOC_EMITTER_KIND_COUNT];
+    spread all, luminance, parts[RANKING_PARTS]; /* all: of what counts */
 } totals;
 
 static totals totals_of(const noc_ranking *r) {
     totals t = { 0 };
     for (int b = 0; b < RANKING_BATCHES; b++) {
-        const ranking_sums *s = &r->batch[b].sums;
-        for (size_t i = 0; i < s->cap; i++)
-            if (s->emitter[i] != NOC_NO_EMITTER)
-                t.kinds[r->emitters.all.data[s->emitter[i]].kind].part[b] += s->value[i] / samples_of(r);
-        t.all.part[b] = r->batch[b].all / samples_of(r);
-        t.sky.part[b] = r->batch[b].sky / samples_of(r);
-        t.luminance.part[b] = r->batch[b].luminance / samples_of(r);
+        const ranking_batch *batch = &r->batch[b];
+        for (int part = 0; part < RANKING_PARTS; part++) {
+            for (int c = 0; c < NOC_CLASS_COUNT; c++)
+                t.parts[part].part[b] += batch->lux[part][c] / samples_of(r);
+            t.all.part[b] += counts(r, part) ? t.parts[part].part[b] : 0;
+        }
+        t.luminance.part[b] = (batch->luminance[0] + (r->count_windows ? batch->luminance[1] : 0)) / samples_of(r);
     }
     return t;
 }
 
-/* What each emitter brought in all; NULL: no memory. *found: how many brought anything. */
-static double *sum_emitters(const noc_ranking *r, size_t *found) {
+static noc_emitter_kind kind_of(const noc_ranking *r, size_t emitter) { return r->emitters.all.data[emitter].kind; }
+
+/* What each emitter brought in all; NULL: no memory. found[kind]: how many of that kind brought anything. */
+static double *sum_emitters(const noc_ranking *r, size_t found[NOC_EMITTER_KIND_COUNT]) {
     double *sum = noc_calloc(NOC_MAX(r->emitters.all.len, 1), sizeof(*sum));
-    *found = 0;
+    memset(found, 0, NOC_EMITTER_KIND_COUNT * sizeof(*found));
     for (int b = 0; b < RANKING_BATCHES && sum; b++) {
         const ranking_sums *s = &r->batch[b].sums;
         for (size_t i = 0; i < s->cap; i++)
             if (s->emitter[i] != NOC_NO_EMITTER) {
-                *found += sum[s->emitter[i]] == 0;
+                found[kind_of(r, s->emitter[i])] += sum[s->emitter[i]] == 0;
                 sum[s->emitter[i]] += s->value[i];
             }
     }
@@ -127,14 +132,15 @@ static double *sum_emitters(const noc_ranking *r, size_t *found) {
 }
 
 noc_status noc_ranking_error(const noc_ranking *r, double *error) {
-    size_t found, best = 0;
-    double *sum = sum_emitters(r, &found);
+    size_t found[NOC_EMITTER_KIND_COUNT], best = SIZE_MAX;
+    double *sum = sum_emitters(r, found);
     *error = 0;
     if (!sum)
         return noc_no_memory(r->view->log, "influence");
-    for (size_t i = 1; i < r->emitters.all.len; i++)
-        best = sum[i] > sum[best] ? i : best;
-    if (found) {
+    for (size_t i = 0; i < r->emitters.all.len; i++)
+        if (sum[i] > 0 && counts(r, (int)kind_of(r, i)) && (best == SIZE_MAX || sum[i] > sum[best]))
+            best = i;
+    if (best != SIZE_MAX) {
         totals t = totals_of(r);
         spread s = spread_of(r, (uint32_t)best);
         noc_estimate share = ratio_of(&s, &t.all);
@@ -158,25 +164,29 @@ static int strongest_first(const void *a, const void *b) {
     return x->emitter < y->emitter ? -1 : x->emitter > y->emitter;
 }
 
-/* Those that brought anything, the strongest first; NULL: no memory. */
-static order *order_emitters(const noc_ranking *r, size_t *found) {
+/* The emitters that count and brought anything, the strongest first, and their number; NULL: no memory. */
+static order *order_emitters(const noc_ranking *r, size_t found[NOC_EMITTER_KIND_COUNT], size_t *count) {
     double *sum = sum_emitters(r, found);
-    order *o = sum ? noc_alloc(NOC_MAX(*found, 1) * sizeof(*o)) : NULL;
-    size_t n = 0;
+    size_t all = 0;
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
+        all += counts(r, k) ? found[k] : 0;
+    order *o = sum ? noc_alloc(NOC_MAX(all, 1) * sizeof(*o)) : NULL;
+    *count = 0;
     for (size_t i = 0; i < r->emitters.all.len && o; i++)
-        if (sum[i] > 0)
-            o[n++] = (order){ sum[i], (uint32_t)i };
+        if (sum[i] > 0 && counts(r, (int)kind_of(r, i)))
+            o[(*count)++] = (order){ sum[i], (uint32_t)i };
     free(sum);
     if (o)
-        qsort(o, n, sizeof(*o), strongest_first);
+        qsort(o, *count, sizeof(*o), strongest_first);
     return o;
 }
 
-static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, const order *o, size_t emitters,
-                     noc_influence_sum *sum) {
+static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest,
+                     const size_t found[NOC_EMITTER_KIND_COUNT], size_t emitters, noc_influence_sum *sum) {
     *sum = (noc_influence_sum){ .lux = mean_of(&t->all),
-                                .sky = mean_of(&t->sky),
-                                .sky_share = ratio_of(&t->sky, &t->all),
+                                .windows_counted = r->count_windows,
+                                .sky = mean_of(&t->parts[RANKING_SKY]),
+                                .sky_share = ratio_of(&t->parts[RANKING_SKY], &t->all),
                                 .rest = mean_of(rest),
                                 .rest_share = ratio_of(rest, &t->all),
                                 .luminance = mean_of(&t->luminance),
@@ -184,10 +194,10 @@ static void fill_sum(const noc_ranking *r, const totals *t, const spread *rest, 
                                 .samples = (uint64_t)samples_of(r) * RANKING_BATCHES,
                                 .seconds = r->seconds,
                                 .restarts = r->restarts };
-    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
-        sum->kinds[k] = (noc_influence_kind){ mean_of(&t->kinds[k]), ratio_of(&t->kinds[k], &t->all), 0 };
-    for (size_t i = 0; i < emitters; i++)
-        sum->kinds[r->emitters.all.data[o[i].emitter].kind].emitters++;
+    for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++) {
+        noc_estimate share = counts(r, k) ? ratio_of(&t->parts[k], &t->all) : (noc_estimate){ NAN, NAN };
+        sum->kinds[k] = (noc_influence_kind){ mean_of(&t->parts[k]), share, found[k] };
+    }
     for (int b = 0; b < RANKING_BATCHES; b++)
         sum->rays += r->batch[b].rays;
 }
@@ -199,6 +209,20 @@ static int heaviest_first(const void *a, const void *b) {
     return (int)x->cls - (int)y->cls;
 }
 
+enum { ALL_PARTS = -1 }; /* that count */
+
+/* Mean illuminance of a class by one part, or by all that count; NaN: no sample fell on the class. */
+static noc_estimate lux_of_class(const noc_ranking *r, int cls, int part) {
+    spread lux, points;
+    for (int b = 0; b < RANKING_BATCHES; b++) {
+        lux.part[b] = 0;
+        for (int p = 0; p < RANKING_PARTS; p++)
+            lux.part[b] += part == p || (part == ALL_PARTS && counts(r, p)) ? r->batch[b].lux[p][cls] : 0;
+        points.part[b] = r->batch[b].points[cls];
+    }
+    return mean_of(&points).value > 0 ? ratio_of(&lux, &points) : (noc_estimate){ NAN, NAN };
+}
+
 noc_status noc_ranking_get_classes(noc_ranking *r, noc_influence_class *classes, size_t count, size_t *found) {
     if (!r || (count && !classes))
         return noc_null(r ? r->view->log : NULL, __func__);
@@ -207,15 +231,10 @@ noc_status noc_ranking_get_classes(noc_ranking *r, noc_influence_class *classes,
     noc_influence_class all[NOC_CLASS_COUNT];
     size_t n = 0;
     for (int c = 0; c < NOC_CLASS_COUNT; c++) {
-        spread lux, points;
-        for (int b = 0; b < RANKING_BATCHES; b++) {
-            lux.part[b] = r->batch[b].lux[c];
-            points.part[b] = r->batch[b].points[c];
-        }
-        bool any = mean_of(&points).value > 0;
         if (r->weight[c] > 0)
-            all[n++] = (noc_influence_class){ (noc_class)c, r->weight[c],
-                                              any ? ratio_of(&lux, &points) : (noc_estimate){ NAN, NAN } };
+            all[n++] =
+                (noc_influence_class){ (noc_class)c, r->weight[c], lux_of_class(r, c, ALL_PARTS),
+                                       lux_of_class(r, c, NOC_EMITTER_LAMP), lux_of_class(r, c, NOC_EMITTER_WINDOW) };
     }
     qsort(all, n, sizeof(*all), heaviest_first);
     for (size_t i = 0; i < n && i < count; i++)
@@ -231,8 +250,8 @@ noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count
         return noc_null(r ? r->view->log : NULL, __func__);
     if (!r->rounds)
         return noc_error(r->view->log, NOC_ERR_ARGUMENT, "influence: nothing was estimated yet");
-    size_t emitters;
-    order *o = order_emitters(r, &emitters);
+    size_t emitters, kinds[NOC_EMITTER_KIND_COUNT];
+    order *o = order_emitters(r, kinds, &emitters);
     if (!o)
         return noc_no_memory(r->view->log, "influence");
     noc_region_info info;
@@ -240,7 +259,7 @@ noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count
     totals t = totals_of(r);
     spread rest;
     for (int b = 0; b < RANKING_BATCHES; b++)
-        rest.part[b] = t.all.part[b] - t.sky.part[b];
+        rest.part[b] = t.all.part[b] - t.parts[RANKING_SKY].part[b];
     count = NOC_MIN(count, emitters);
     noc_scene_lock_read(r->view->scene);
     const noc_scene *scene = r->lights == r->view->scene->versions.lights ? r->view->scene : NULL;
@@ -259,7 +278,7 @@ noc_status noc_ranking_get(noc_ranking *r, noc_influence_row *rows, size_t count
     if (found)
         *found = count;
     if (sum)
-        fill_sum(r, &t, &rest, o, emitters, sum);
+        fill_sum(r, &t, &rest, kinds, emitters, sum);
     free(o);
     return NOC_OK;
 }

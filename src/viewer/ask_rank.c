@@ -26,6 +26,14 @@ static const char *kind_of(const noc_emitter *e) {
     return e->kind == NOC_EMITTER_LAMP && e->inferred ? "inferred" : names[e->kind];
 }
 
+/* NAME and NAME_error. */
+static void set_estimate(json_t *m, const char *name, const noc_estimate *e) {
+    char error[32];
+    snprintf(error, sizeof(error), "%s_error", name);
+    json_object_set_new(m, name, ask_number(e->value));
+    json_object_set_new(m, error, ask_number(e->error));
+}
+
 static json_t *row_of(const char *kind, const char *name, long light, const noc_estimate *share,
                       const noc_estimate *lux) {
     json_t *row = json_object();
@@ -71,8 +79,7 @@ static json_t *kinds_of(const noc_influence_sum *sum) {
         json_object_set_new(row, "emitters", json_integer((json_int_t)one.emitters));
         json_object_set_new(row, "share", ask_number(one.share.value));
         json_object_set_new(row, "error", ask_number(one.share.error));
-        json_object_set_new(row, "lux", ask_number(one.lux.value));
-        json_object_set_new(row, "lux_error", ask_number(one.lux.error));
+        set_estimate(row, "lux", &one.lux);
         json_array_append_new(list, row);
     }
     return list;
@@ -85,8 +92,9 @@ static json_t *classes_of(const noc_influence_class *classes, size_t count) {
         json_t *row = json_object();
         json_object_set_new(row, "class", json_string(noc_class_name(classes[i].cls)));
         json_object_set_new(row, "area", ask_number(classes[i].weight));
-        json_object_set_new(row, "lux", ask_number(classes[i].lux.value));
-        json_object_set_new(row, "lux_error", ask_number(classes[i].lux.error));
+        set_estimate(row, "lamps", &classes[i].lamps);
+        set_estimate(row, "windows", &classes[i].windows);
+        set_estimate(row, "lux", &classes[i].lux);
         json_array_append_new(list, row);
     }
     return list;
@@ -135,10 +143,10 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     json_object_update(m, about);
     if (json_object_get(about, "area"))
         json_object_set_new(m, "classes", classes_of(classes, get_classes(ranking, about, classes)));
-    json_object_set_new(m, "lux", ask_number(sum.lux.value));
-    json_object_set_new(m, "lux_error", ask_number(sum.lux.error));
-    json_object_set_new(m, "luminance", ask_number(sum.luminance.value));
-    json_object_set_new(m, "luminance_error", ask_number(sum.luminance.error));
+    set_estimate(m, "lamps", &sum.kinds[NOC_EMITTER_LAMP].lux);
+    set_estimate(m, "windows", &sum.kinds[NOC_EMITTER_WINDOW].lux);
+    set_estimate(m, "lux", &sum.lux);
+    set_estimate(m, "luminance", &sum.luminance);
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
     json_object_set_new(m, "kinds", kinds_of(&sum));
     json_object_set_new(m, "rows", rows_of(rows, found, &sum));
@@ -155,7 +163,8 @@ static bool is_good(noc_ranking *ranking) {
 }
 
 static void rank(asker *a, const question *q, const noc_region *region, json_t *about) {
-    noc_ranking_params params = { .render = &q->view.render, .eye = q->view.camera.eye };
+    /* Windows count: the answer explains a picture that they light, too. */
+    noc_ranking_params params = { .render = &q->view.render, .eye = q->view.camera.eye, .count_windows = true };
     noc_ranking *ranking = noc_ranking_create(a->ask_view, region, &params);
     noc_status status = ranking ? NOC_OK : NOC_ERR_MEMORY;
     double spent = 0, next = FIRST_SECONDS;

@@ -121,6 +121,7 @@ char *out_influence(const viewer_source *source, viewer_world *world, const noc_
         add_numbers(&list, "--width", &size[0], 1);
         add_numbers(&list, "--height", &size[1], 1);
     }
+    words_add(&list, "--count-windows");
     words_add(&list, "--region");
     words_add(&list, region);
     return line_of(&list, beyond);

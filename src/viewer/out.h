@@ -24,8 +24,9 @@ look out_look(const out_view *view);
  * are the same. What no option says (materials) is told behind a #. The caller frees it. NULL: no memory. */
 char *out_command(const out_view *view);
 
-/* "nocturne influence INPUTS ... --region REGION", which asks the same of the world as it is. camera, of a picture of
- * that size: where the region is said by its pixels; else NULL. The caller frees it. NULL: no memory. */
+/* "nocturne influence INPUTS ... --count-windows --region REGION", which asks the same of the world as it is. camera,
+ * of a picture of that size: where the region is said by its pixels; else NULL. The caller frees it. NULL: no memory.
+ */
 char *out_influence(const viewer_source *source, viewer_world *world, const noc_render_params *render,
                     const char *region, const noc_camera *camera, int width, int height);
 

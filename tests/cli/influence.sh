@@ -17,13 +17,13 @@ ask() { run influence map.osm --map-surfaces -q --sky 0 "$@"; }
 ask --region "street:Well Lane" --csv well.csv
 test "$(stat -c %a well.csv)" = 600; result $? "a CSV keeps the mode of what it replaces" "$(stat -c %a well.csv)"
 grep -q 'node/12, mapped\|node/12, Well Lane, map.osm' out && grep -q '^street:Well Lane: around' out &&
-    grep -Eq '^ +[0-9.]+ ±[0-9.]+ +[0-9]+  road$' out && tail -n 1 well.csv | grep -q '^,"road","class",' &&
-    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 7 ]
+    grep -Eq '^( +[0-9.]+ ±[0-9.]+){3} +[0-9]+  road$' out && tail -n 1 well.csv | grep -q '^,"road","class",' &&
+    [ "$(sed -n 's/^1,"\([^"]*\)".*/\1/p' well.csv)" = node/12 ] && [ "$(wc -l <well.csv)" = 8 ]
 result $? "a street is lit by its lamps, the stronger one first"
 grep -Eq '^ +[0-9.]+ ±[0-9.]+ +100.00 ±0.00 +2 lamps$' out && grep -q '^,"lamp","kind",' well.csv
 result $? "and both are told as one kind"
 
-head -n 1 well.csv | grep -q ',area,crs$' && [ "$(grep -c '"EPSG:32633' well.csv)" = 2 ]
+head -n 1 well.csv | grep -q ',area,crs,lamps_lux,' && [ "$(grep -c '"EPSG:32633' well.csv)" = 2 ]
 result $? "the table names the CRS of its places"
 
 awk -F, 'NR > 1 && $1 != "" { share += $7; lux += $5 } /"all"/ { all = $5 }
@@ -60,6 +60,44 @@ run influence builtin:city -q --region pixel:640,600 --top 3 &&
         END { exit !(sum > 99.9 && sum < 100.1) }' out &&
     grep -q 'cd/m2 .* towards the camera' out && grep -Eq ' [0-9,]+ others$' out
 result $? "a pixel has three rows, the others, the sky, its luminance, and kinds that sum up"
+
+# Windows stand beside the sums; --count-windows takes them in.
+cat >apart.py <<'PY'
+import csv, json, sys
+counted = len(sys.argv) > 1
+with open('out') as f:
+    j = json.load(f)
+kinds = {k['kind']: k for k in j['kinds']}
+near = lambda a, b: abs(a - b) < 1e-4 * b
+assert j['windows_counted'] is counted and near(j['lamps'], kinds['lamp']['lux']), j
+assert j['windows'] > .2 and near(j['windows'], kinds['window']['lux']) and j['windows_error'] > 0, j
+rest = sum(k['lux'] for k in j['kinds'] if k['kind'] != 'window') + j['sky']
+assert near(j['lux'], rest + counted * j['windows']), (j['lux'], rest, j['windows'])
+assert sum(k['share'] or 0 for k in j['kinds']) + j['sky_share'] - 1 < 1e-6
+assert (kinds['window']['share'] is not None) is counted, kinds
+assert any(row['kind'] == 'window' for row in j['rows']) is counted
+for c in j['classes']:
+    assert c['lamps'] > 0 and c['windows'] > 0 and c['lux'] > c['lamps'] + counted * c['windows'] - 1e-9, c
+with open('city.csv') as f:
+    rows = list(csv.DictReader(f))
+all, = [row for row in rows if row['kind'] == 'all']
+assert all['name'] == ('windows counted' if counted else 'without windows'), all
+assert near(float(all['lux']), j['lux']) and near(float(all['lamps_lux']), j['lamps']), all
+assert near(float(all['windows_lux']), j['windows']) and float(all['windows_lux_error']) > 0, all
+assert any(row['kind'] == 'window' for row in rows) is counted
+assert [row['name'] for row in rows if row['kind'] == 'kind'][:2] == ['lamp', 'window']
+PY
+run influence builtin:city -q --json --csv city.csv --region "street:street 1" --top 400 && python3 apart.py
+result $? "windows are told beside lamps and not counted"
+run influence builtin:city -q --json --csv city.csv --region "street:street 1" --top 400 --count-windows &&
+    python3 apart.py counted
+result $? "--count-windows counts them"
+run influence builtin:city -q --region "street:street 1" --top 1 &&
+    sed -n 2p out | grep -Eq '^[0-9.]+ lx ± [0-9.]+ by 143 lamps$' &&
+    sed -n 3p out | grep -Eq '^[0-9.]+ lx ± [0-9.]+ by [0-9]+ windows, not counted below' &&
+    sed -n 4p out | grep -Eq '^[0-9.]+ lx ± .* by [0-9]+ lights and the sky, without windows$' &&
+    sed '1,/by kind/d' out | sed -n '1s/.* //p;2s/.* //p' | tr '\n' ' ' | grep -qx 'lamps windows '
+result $? "lamps come first"
 
 run build builtin:city -o city.noct -q && run influence city.noct -q --region "street:street 1" --top 2 &&
     [ "$(grep -c '  lamp ' out)" -ge 1 ]
@@ -112,7 +150,7 @@ cp map.osm kept.osm
 expect "an input is not overwritten" 1 'is an input too' influence map.osm --region point:0,0 --csv map.osm
 cmp -s map.osm kept.osm
 result $? "and stays as it is"
-ask --region "street:Well Lane" --csv - && head -n 1 out | grep -q '^rank,name,' && [ "$(wc -l <out)" = 7 ]
+ask --region "street:Well Lane" --csv - && head -n 1 out | grep -q '^rank,name,' && [ "$(wc -l <out)" = 8 ]
 result $? "--csv - writes CSV in place of the table"
 expect "one of two on standard output" 2 'exclude each other' influence map.osm --region point:0,0 --csv - --json
 expect "classes are those of objects" 2 'is for --region object' influence map.osm --region point:0,0 --class wall

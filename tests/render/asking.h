@@ -33,7 +33,7 @@ static inline noc_render_params no_sky(uint32_t seed) {
 
 static inline answer ask(noc_view *view, const noc_region *region, const noc_render_params *p, uint64_t rays) {
     answer a = { .count = 0 };
-    noc_ranking_params params = { .render = p };
+    noc_ranking_params params = { .render = p, .count_windows = true };
     noc_ranking *r = noc_ranking_create(view, region, &params);
     assert_non_null(r);
     noc_ranking_target target = { .rays = (uint64_t)samples((int)rays) };

@@ -53,6 +53,78 @@ static void classes_have_their_closed_form(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Illuminance of a polygon of 1 cd/m2 at the origin, whose normal is up (Lambert 1760): half the sum over its edges of
+ * the angle that each spans times the vertical part of the unit normal of the plane through it and the origin. */
+static double lambert(double (*v)[3], int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const double *a = v[i], *b = v[(i + 1) % count];
+        double c[3] = { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+        double sine = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]), cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        sum += atan2(sine, cosine) * c[2] / sine;
+    }
+    return fabs(sum) / 2;
+}
+
+/* One lamp and one window, each known in closed form: the window stands beside the sums unless it is counted, and with
+ * the lamp off it is told all the same. */
+static void windows_stand_beside(void **state) {
+    (void)state;
+    double pane[4][3] = { { -1, 4, 1 }, { 1, 4, 1 }, { 1, 4, 2.5 }, { -1, 4, 2.5 } };
+    double lamp = 300 / 36.0, window = 25 * lambert(pane, 4);
+    noc_scene *s = noc_scene_create(NULL);
+    int road = of_class(s, NOC_CLASS_ROAD);
+    int glow = noc_scene_add_material(
+        s, &(noc_material){ .roughness = 1, .emission = { 25, 25, 25 }, .two_sided = true, .cls = NOC_CLASS_WINDOW });
+    add_floor(s, road, 0, 0, 0, 40);
+    QUAD(s, glow, -1, 4, 1, 2, 0, 0, 0, 0, 1.5);
+    point_light(s, 0, 0, 6, 300);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_patch y = point_at(0, 0, 0);
+    y.material = (uint32_t)road;
+    noc_view *view = own_view(s, 2, NULL);
+    noc_region *region = region_of(&y, 1);
+    noc_render_params p = no_sky(1);
+    double eye[3] = { 0, -9, 5 }, seen[2];
+    for (int counted = 0; counted < 2; counted++) {
+        noc_ranking_params params = { .render = &p, .eye = eye, .count_windows = counted };
+        noc_ranking *r = noc_ranking_create(view, region, &params);
+        noc_influence_row rows[2];
+        noc_influence_sum sum;
+        noc_influence_class c;
+        size_t found;
+        assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .rays = (uint64_t)samples(200000) }, NULL), 0);
+        assert_int_equal(noc_ranking_get(r, rows, 2, &found, &sum), NOC_OK);
+        const noc_influence_kind *by_lamp = &sum.kinds[NOC_EMITTER_LAMP], *by_window = &sum.kinds[NOC_EMITTER_WINDOW];
+        double all = lamp + counted * window, near = SANITIZED ? .05 : 2e-3;
+        assert_true(fabs(by_lamp->lux.value - lamp) < 1e-5 * lamp && by_lamp->emitters == 1);
+        assert_true(fabs(by_window->lux.value - window) < near * window && by_window->emitters == 1);
+        assert_true(fabs(sum.lux.value - all) < near * all && sum.windows_counted == counted);
+        assert_true(found == 1 + (size_t)counted && sum.emitters == found && fabs(sum.rest.value) < 1e-9);
+        assert_true(rows[0].emitter.kind == NOC_EMITTER_LAMP && fabs(rows[0].share.value - lamp / all) < near);
+        assert_true(fabs(by_lamp->share.value - lamp / all) < near);
+        assert_true(counted ? fabs(by_window->share.value - window / all) < near : isnan(by_window->share.value));
+        assert_int_equal(noc_ranking_get_classes(r, &c, 1, &found), NOC_OK);
+        assert_true(fabs(c.lux.value - sum.lux.value) < 1e-9 && fabs(c.lamps.value - by_lamp->lux.value) < 1e-9);
+        assert_true(fabs(c.windows.value - by_window->lux.value) < 1e-9);
+        seen[counted] = sum.luminance.value;
+        noc_ranking_destroy(r);
+    }
+    assert_true(seen[0] > .1 && seen[1] > seen[0] * 1.02); /* the window's gloss and light */
+    assert_int_equal(noc_scene_set_emission(s, 0, (float[3]){ 0 }), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_ranking *r = noc_ranking_create(view, region, &(noc_ranking_params){ .render = &p });
+    noc_influence_sum sum;
+    size_t found;
+    assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .error = .01 }, NULL), NOC_OK);
+    assert_int_equal(noc_ranking_get(r, NULL, 0, &found, &sum), NOC_OK);
+    assert_true(sum.lux.value == 0 && sum.emitters == 0 && sum.kinds[NOC_EMITTER_WINDOW].lux.value > .5 * window);
+    noc_ranking_destroy(r);
+    noc_region_destroy(region);
+    close_view(view);
+    noc_scene_destroy(s);
+}
+
 /* Of a class that is a hundredth of the region, intervals hold the truth as often as they say, and so do totals. */
 static void errors_of_classes_cover(void **state) {
     (void)state;
@@ -269,6 +341,7 @@ static void a_point_has_the_profile_s_candela(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(classes_have_their_closed_form),
+                                        cmocka_unit_test(windows_stand_beside),
                                         cmocka_unit_test(errors_of_classes_cover),
                                         cmocka_unit_test(a_texture_is_seen_as_in_the_picture),
                                         cmocka_unit_test(triangles_have_their_texture),

@@ -47,6 +47,9 @@ def test_who_lights_this(p):
     assert near([sum(one["lux"] for one in kinds.values()) / answer["lux"],
                  sum(one["share"] for one in kinds.values())], [1, 1], 1e-6), kinds
     assert sum(one["emitters"] for one in kinds.values()) == answer["emitters"], kinds
+    assert [one["kind"] for one in answer["kinds"]][:2] == ["lamp", "window"], answer["kinds"]
+    assert answer["lamps"] == kinds["lamp"]["lux"] > 0 and answer["windows"] == kinds["window"]["lux"] > 0, answer
+    assert "--count-windows" in shlex.split(answer["command"]), answer["command"]
     lamps = sum(row["share"] for row in answer["rows"] if row["kind"] == "lamp")
     assert lamps <= kinds["lamp"]["share"] + 1e-9, (lamps, kinds)
     named = [row["share"] for row in answer["rows"] if row["light"] >= 0]
@@ -61,6 +64,9 @@ def test_who_lights_this(p):
     mean = sum(one["area"] * one["lux"] for one in whole["classes"]) / sum(areas)
     assert abs(mean - whole["lux"]) < 6 * whole["lux_error"] + 0.05 * mean, (mean, whole)
     assert all(one["class"] and one["lux_error"] >= 0 for one in whole["classes"])
+    for one in ("lamps", "windows"):
+        mean = sum(row["area"] * row[one] for row in whole["classes"]) / sum(areas)
+        assert abs(mean - whole[one]) < 6 * whole[one + "_error"] + 0.05 * mean, (one, mean, whole)
     assert "classes" not in answer
     c.say("save", id=9, what="csv", of=1)
     file = c.wait_for(lambda m: isinstance(m, Picture) and m.kind == 2)
@@ -71,7 +77,7 @@ def test_who_lights_this(p):
     assert len(lines) == 1 + answer["emitters"] + sums, (len(lines), answer["emitters"])
     assert all('"kind"' in line for line in lines[-sums:-2]), lines[-sums:]
     assert answer["emitters"] > len(named)
-    assert '"sky"' in lines[-2] and '"all"' in lines[-1], lines[-2:]
+    assert '"sky"' in lines[-2] and '"windows counted","all"' in lines[-1], lines[-2:]
     listed = [line.split(",") for line in lines[1:-sums]]
     assert abs(sum(float(row[6]) for row in listed) + float(lines[-2].split(",")[6]) - 1) < 0.001
     c.say("save", id=10, what="csv", of=12345)

@@ -26,6 +26,12 @@ const KINDS = {
 const kindWords = ({ kind, emitters }) =>
     kind in KINDS ? `${emitters.toLocaleString('en')} ${KINDS[kind][emitters === 1 ? 0 : 1]}` : kind;
 
+// Lamps first, then windows, then the strongest.
+const byKind = (kinds) => {
+    const place = ({ kind }) => ['lamp', 'window', kind].indexOf(kind);
+    return [...kinds].sort((a, b) => place(a) - place(b) || b.share - a.share);
+};
+
 // A table of a word and figures in each row.
 function figures(kind, caption, heads, rows) {
     const cell = (text, i) => el('td', { class: i ? 'figure' : null, text });
@@ -249,7 +255,9 @@ export class Ask {
     #tell(what, answer) {
         const first = answer.rows?.[0];
         const most = first ? ` Most of it, ${number(100 * first.share)} %, by ${first.name || first.kind}.` : '';
-        const kinds = (answer.kinds ?? []).map((one) => `${kindWords(one)} ${number(100 * one.share)} %`).join(', ');
+        const kinds = byKind(answer.kinds ?? [])
+            .map((one) => `${kindWords(one)} ${number(100 * one.share)} %`)
+            .join(', ');
         const by = kinds && ` By kind: ${kinds}.`;
         const light =
             answer.lux !== undefined ? `${number(answer.lux)} lx.${by}${most}` : 'Nothing is there: the sky.';
@@ -291,7 +299,9 @@ export class Ask {
                 ['street', answer.street],
                 ['object', answer.object],
                 ['area', answer.area && `${number(answer.area)} m²`],
-                ['illuminance', this.#estimate(answer.lux, answer.lux_error, 'lx')],
+                ['lamps', this.#estimate(answer.lamps, answer.lamps_error, 'lx')],
+                ['windows', this.#estimate(answer.windows, answer.windows_error, 'lx')],
+                ['all light', this.#estimate(answer.lux, answer.lux_error, 'lx')],
                 ['luminance', this.#estimate(answer.luminance, answer.luminance_error, 'cd/m²')],
             ]),
             this.#classes(answer.classes ?? []),
@@ -306,32 +316,32 @@ export class Ask {
         return figures(
             'surfaces',
             'Illuminance of its surfaces',
-            ['surface', 'm²', 'lx', '±'],
+            ['surface', 'm²', 'lamps', 'windows', 'lx', '±'],
             classes.map((one) => [
                 one.class,
                 number(one.area),
+                one.lamps === null ? '' : number(one.lamps),
+                one.windows === null ? '' : number(one.windows),
                 one.lux === null ? '' : number(one.lux),
                 one.lux_error > 0 ? number(one.lux_error, 2) : '',
             ]),
         );
     }
 
-    // What all lamps bring together, all windows, ..., the strongest first.
+    // What all lamps bring together, all windows, ...
     #kinds(kinds) {
         if (!kinds.length) return null;
         return figures(
             'kinds',
             'Sums by kind of light',
             ['by kind', 'share', '±', 'lx', '±'],
-            [...kinds]
-                .sort((a, b) => b.share - a.share)
-                .map((one) => [
-                    kindWords(one),
-                    `${number(100 * one.share)} %`,
-                    one.error > 0 ? number(100 * one.error, 2) : '',
-                    number(one.lux),
-                    one.lux_error > 0 ? number(one.lux_error, 2) : '',
-                ]),
+            byKind(kinds).map((one) => [
+                kindWords(one),
+                `${number(100 * one.share)} %`,
+                one.error > 0 ? number(100 * one.error, 2) : '',
+                number(one.lux),
+                one.lux_error > 0 ? number(one.lux_error, 2) : '',
+            ]),
         );
     }
 
