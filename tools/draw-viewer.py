@@ -71,6 +71,9 @@ def every(machine, link, folder):
             show(page, mode)
             shot(f'mode-{mode}', 0)
         show(page, page.evaluate('viewer.schema.modes[0].name'))
+        page.press('#more')
+        shot('more', 0)
+        page.press('#more')
         for one in ('divider', 'methods', 'difference'):
             layout(page, one)
             shot(f'layout-{one}')
@@ -117,6 +120,14 @@ def for_docs(machine, link, folder):
     page.wait("viewer.state.world.values['group.lamps'] === '0.5,4000K'")
     page.browser.listen(2 * REST)
     page.screenshot(os.path.join(folder, 'before-and-after.png'))
+    page.close()
+    page = machine.page(link, 390, 844, True)
+    ready(page)
+    page.viewport(390, 844, True, density=1)
+    page.press('#views button[data-name=illuminance]')
+    page.press('#more')
+    shown(page, REST)
+    page.screenshot(os.path.join(folder, 'phone.png'))
     page.close()
 
 

@@ -100,6 +100,11 @@ def choose(page, name, value):
     }})()''')
 
 
+def press_choice(page, name):
+    """Presses the button of what is shown, of a layout or of a way of moving, which may be behind More."""
+    page.evaluate(f"document.querySelector('[role=radio][data-name=\"{name}\"]').click()")
+
+
 def press_text(page, text):
     """Presses the button of the panels that says this."""
     page.wait(f"""(() => {{

@@ -5,14 +5,14 @@ import re
 
 import browser
 import wire
-from leaf import (CITY, Opened, apart, blur, camera, choose, differs, direction, far, look, opened, press_text, rests,
-                  run, state)
+from leaf import (CITY, Opened, apart, blur, camera, choose, differs, direction, far, look, opened, press_choice,
+                  press_text, rests, run, state)
 
 
 class Page(Opened):
     def test_moves(self):
         page = self.page
-        page.press('#moving button[data-name=fly]')
+        press_choice(page, 'fly')
         before, start = look(page), camera(page)
         page.key('w', up=False)
         page.wait(f'Math.hypot(...viewer.camera.eye.map((x, i) => x - {start["eye"]}[i])) > 1')
@@ -73,29 +73,22 @@ class Page(Opened):
     def test_shows_modes(self):
         page = self.page
         before = look(page)
-        names = page.evaluate("[...document.querySelectorAll('#modes button')].map((one) => one.dataset.name)")
+        names = page.evaluate("""[...document.querySelectorAll('#views button, #modes button')]
+            .map((one) => one.dataset.name)""")
+        assert names[:3] == ['picture', 'illuminance', 'influential'], names
         assert len(names) > 10, names
         for name in names[1:]:
-            page.evaluate(f"document.querySelector('#modes button[data-name=\"{name}\"]').click()")
+            press_choice(page, name)
             page.wait(f"viewer.state.panes[0].values.show === '{name}'")
             differs(page, before, 2)
             before = look(page)
-        page.evaluate("document.querySelector('#modes button').click()")
+        press_choice(page, 'picture')
         page.wait(f"viewer.state.panes[0].values.show === '{names[0]}'")
         page.wait("document.getElementById('legend').hidden")
 
-    def test_rows_show_that_there_is_more(self):
-        page = self.page
-        has = "document.getElementById('modes').classList.contains('more-%s')"
-        page.evaluate("(document.getElementById('modes').scrollLeft = 0, 0)")
-        page.wait(f"{has % 'after'} && !{has % 'before'}")
-        page.evaluate("(document.getElementById('modes').scrollLeft = 1e6, 0)")
-        page.wait(f"!{has % 'after'} && {has % 'before'}")
-        page.evaluate("(document.getElementById('modes').scrollLeft = 0, 0)")
-
     def test_has_legends(self):
         page = self.page
-        page.evaluate("document.querySelector('#modes button[data-name=depth]').click()")
+        press_choice(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
         before = look(page)
         page.evaluate("document.querySelector('#legend .handle.high').focus()")
@@ -117,7 +110,7 @@ class Page(Opened):
         page.wait(f"JSON.stringify({ticks}) === '{json.dumps(wanted, separators=(',', ':'))}'")
         page.evaluate("viewer.set('isolines', '0')")
         blur(page)
-        page.evaluate("document.querySelector('#modes button').click()")
+        press_choice(page, 'picture')
         page.wait("document.getElementById('legend').hidden")
 
     def test_legends_make_room(self):
@@ -127,7 +120,7 @@ class Page(Opened):
         def at():
             return page.evaluate(f'(({{ x, y }}) => [x, y])({legend})')
 
-        page.evaluate("document.querySelector('#modes button[data-name=depth]').click()")
+        press_choice(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
         x, y = page.middle('#legend .band')
         under = page.evaluate(f"document.elementFromPoint({x}, {y}).closest('#stage') !== null")
@@ -155,7 +148,7 @@ class Page(Opened):
         for _ in range(10):
             page.key('ArrowDown')
         blur(page)
-        page.evaluate("document.querySelector('#modes button').click()")
+        press_choice(page, 'picture')
         page.wait("document.getElementById('legend').hidden")
 
     def test_sets_options(self):
@@ -201,7 +194,7 @@ class Page(Opened):
 
     def test_divides(self):
         page = self.page
-        page.press('#layouts button[data-name=divider]')
+        press_choice(page, 'divider')
         page.wait("document.querySelectorAll('.pane').length === 2")
         page.evaluate('viewer.edit(1)')
         page.wait("[0, 1].every((i) => document.querySelectorAll('.picture')[i].dataset.n)")
@@ -281,14 +274,14 @@ class Page(Opened):
     def test_compares(self):
         page = self.page
         method = state(page, 'panes[0].values.method')
-        page.press('#layouts button[data-name=methods]')
+        press_choice(page, 'methods')
         page.wait("document.querySelectorAll('.pane').length >= 4")
         page.wait("[...document.querySelectorAll('.picture')].every((one) => one.dataset.n)", 60)
         captions = page.evaluate("[...document.querySelectorAll('.caption')].map((one) => one.innerText)")
         assert len(set(captions)) == 6 and captions[-1] == 'ReSTIR' and all(captions), captions
         assert page.evaluate("viewer.state.panes.every(({ values }) => values.smooth === 'false')")
         page.evaluate("document.querySelectorAll('.picture')[2].dataset.n = 'old'")
-        page.press('#layouts button[data-name=difference]')
+        press_choice(page, 'difference')
         page.wait("viewer.state.layout === 'difference'")
         assert page.evaluate("document.querySelectorAll('.picture')[2].dataset.n !== 'old'"), 'a picture of RIS is left'
         page.evaluate("(viewer.told = [], viewer.on('stats', ({ pane, frames }) => pane === 2 && viewer.told.push("
@@ -316,13 +309,13 @@ class Page(Opened):
                               "(document.getElementById('legend-difference').getBoundingClientRect())")
         assert box[0] >= 0 and box[1] <= 390 and box[2] >= 0, box
         narrow.close()
-        page.press('#layouts button[data-name=single]')
+        press_choice(page, 'single')
         page.wait("document.querySelectorAll('.pane').length === 1")
         assert state(page, 'panes[0].values.method') == method, 'all methods have changed this look'
 
     def modes_of_a_difference(self, page):
         """Picture and reference show the same kind of numbers, with their legend; the difference keeps its own."""
-        page.evaluate("document.querySelector('#modes button[data-name=illuminance]').click()")
+        press_choice(page, 'illuminance')
         page.wait("[0, 1].every((i) => viewer.stats[i]?.legend?.unit === 'lx')", 60)
         legends = '''(() => {
             const box = (one) => one.getBoundingClientRect();
@@ -333,10 +326,10 @@ class Page(Opened):
                 within(box(one('legend')), pane(0)), within(box(one('legend-difference')), pane(2))];
         })()'''
         assert page.evaluate(legends) == [True] * 4, page.evaluate(legends)
-        page.evaluate("document.querySelector('#modes button[data-name=picture]').click()")
+        press_choice(page, 'picture')
         page.wait("[0, 1].every((i) => viewer.state.panes[i].values.show === 'picture' && !viewer.stats[i]?.legend)")
         page.wait("document.getElementById('legend').hidden && !document.getElementById('legend-difference').hidden")
-        page.evaluate("document.querySelector('#modes button[data-name=lights]').click()")
+        press_choice(page, 'lights')
         page.wait("document.querySelector('.toast.error') !== null")  # the reference has none
         assert page.evaluate("viewer.state.panes.every(({ values }) => values.show === 'picture')")
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """The page for who does not see, point or have much room."""
+import json
+
 from leaf import Opened, blur, camera, opened, press_text, rests, run
 
 
@@ -12,28 +14,82 @@ class Access(Opened):
         page.wait("document.getElementById('help').open")
         page.key('Escape')
         page.wait("!document.getElementById('help').open")
-        seen = []
-        for _ in range(40):  # the tab key comes to every panel's button
-            page.key('Tab')
-            seen.append(page.evaluate('document.activeElement.textContent'))
-            if seen[-1] == 'Settings':
-                break
-        assert seen[-1] == 'Settings', seen
+        focused = 'document.activeElement.id || document.activeElement.textContent'
+
+        def tab_to(wanted):  # the tab key comes to every panel's button
+            seen = []
+            while page.evaluate(focused) != wanted:
+                page.key('Tab')
+                seen.append(page.evaluate(focused))
+                assert len(seen) < 40, seen
+
+        tab_to('more')
+        page.key('Enter')
+        page.wait("!document.getElementById('laboratory').hidden")
+        tab_to('Settings')
         page.key('Enter')
         page.wait("!document.getElementById('left').hidden")
+        assert page.evaluate("document.getElementById('laboratory').hidden"), 'two things are beside the picture'
         page.key('Escape')
         page.wait("document.getElementById('left').hidden")
-        assert page.evaluate('document.activeElement.textContent') == 'Settings', 'the focus did not come back'
-        page.evaluate("document.querySelector('#modes button[tabindex=\"0\"]').focus()")
+        assert page.evaluate(focused) == 'more', 'the focus did not come back'
+        page.evaluate("document.querySelector('#views button[tabindex=\"0\"]').focus()")
         page.key('ArrowRight')
         name = page.evaluate('document.activeElement.dataset.name')
         page.wait(f"viewer.state.panes[0].values.show === '{name}'")
         page.key('ArrowLeft')
         page.wait("viewer.state.panes[0].values.show === 'picture'")
 
+    def test_more(self):
+        """Three buttons say what is shown; all else that can be is behind one that discloses it, for this session."""
+        page = opened(self.machine, self.served.link, width=1280, height=720)
+        seen = "[...document.querySelectorAll('%s')].filter((one) => one.checkVisibility()).map((one) => one.innerText)"
+        assert page.evaluate(seen % '#views button') == ['Picture', 'Lux', 'Who lights it']
+        assert page.evaluate(seen % '#layouts button, #modes button') == []
+        more = "(({ ariaExpanded: on, textContent: says }) => `${on},${says}`)(document.getElementById('more'))"
+        assert page.evaluate(more) == 'false,More'
+        assert page.evaluate("document.getElementById(document.getElementById('more').getAttribute('aria-controls'))"
+                             "?.id") == 'laboratory'
+        page.evaluate("document.getElementById('more').focus()")
+        page.key(' ')
+        page.wait(f"{more} === 'true,More'")
+        assert page.evaluate(seen % '#layouts button') == ['One', 'A|B', 'Methods', 'Difference']
+        assert page.evaluate((seen % '#modes button') + '.length') == page.evaluate('viewer.schema.modes.length - 3')
+        page.key('Tab')  # into what it discloses
+        assert page.evaluate("document.activeElement.closest('#laboratory') !== null")
+        page.evaluate("document.querySelector('#modes [data-name=depth]').click()")
+        page.wait("viewer.stats[0].show === 'depth'")
+        assert page.evaluate(more) == 'true,More: depth'
+        assert page.evaluate("document.querySelectorAll('#views [aria-checked=true]').length") == 0
+        page.reload()
+        page.wait("globalThis.viewer?.state && document.querySelector('.picture').dataset.n", 60)
+        page.wait(f"{more} === 'true,More: depth'")
+        other = opened(self.machine, self.served.link, width=1280, height=720)
+        assert other.evaluate(more) == 'false,More', 'another session has it'
+        other.close()
+        page.evaluate("document.querySelector('#layouts [tabindex=\"0\"]').focus()")
+        page.key('Escape')
+        page.wait(f"{more} === 'false,More: depth'")
+        assert page.evaluate('document.activeElement.id') == 'more', 'the focus is lost'
+        page.reload()
+        page.wait(f"globalThis.viewer?.state && {more} === 'false,More: depth'")
+        for key, name in (('2', 'illuminance'), ('3', 'influential'), ('1', 'picture')):
+            page.key(key)
+            page.wait(f"document.querySelector('#views [data-name={name}]').ariaChecked === 'true'")
+        for width, behind in ((1000, ['moving']), (640, ['tabs', 'moving']), (1000, ['moving']), (1280, [])):
+            page.viewport(width, 720)
+            page.wait(f"innerWidth === {width} && JSON.stringify([...document.querySelectorAll('#laboratory > [id]')]"
+                      f".map(({{ id }}) => id)) === '{json.dumps(behind, separators=(',', ':'))}'")
+        last = page.evaluate("[...document.querySelectorAll('#bar > *')].slice(-2).map(({ id }) => id)")
+        assert last == ['moving', 'tabs'], last
+        assert not page.errors, page.errors
+        page.close()
+
     def test_everything_has_a_key_a_name_and_a_focus(self):
         """Tab reaches every control that is seen; each has a name, and shows that it has the focus."""
         page = self.page
+        page.viewport(1280, 720)
+        page.press('#more')
         for key in 'pb':
             page.key(key)
             blur(page)
@@ -49,7 +105,7 @@ class Access(Opened):
         assert signs == [], signs
         wanted = page.evaluate("""(() => {
             const all = [...document.querySelectorAll('button, input, select, textarea, summary, canvas[tabindex]')];
-            const seen = all.filter((one) => one.offsetParent && !one.disabled && one.tabIndex >= 0
+            const seen = all.filter((one) => one.checkVisibility() && !one.disabled && one.tabIndex >= 0
                 && !(one.type === 'radio'));
             seen.forEach((one, i) => (one.dataset.wanted = i));
             return seen.length;
@@ -72,7 +128,10 @@ class Access(Opened):
         blur(page)
         page.key('Escape')
         page.key('Escape')
-        page.wait("['left', 'right'].every((id) => document.getElementById(id).hidden)")
+        page.key('Escape')
+        page.wait("['left', 'right', 'laboratory'].every((id) => document.getElementById(id).hidden)")
+        page.viewport(640, 420)
+        page.wait('innerWidth === 640')
         roles = page.evaluate("""['said', 'toasts', 'loading'].map((id) => document.getElementById(id))
             .map((one) => one.getAttribute('aria-live') ?? one.getAttribute('role'))""")
         assert roles == ['polite', 'polite', 'status'], roles
@@ -196,9 +255,10 @@ class Access(Opened):
         phone = opened(self.machine, self.served.link, width=390, height=844, phone=True)
         for width, height in ((390, 844), (844, 390)):
             phone.viewport(width, height, True)
-            self.machine.listen(0.3)
+            phone.wait(f'innerWidth === {width} && innerHeight === {height}')
             wide = phone.evaluate('document.documentElement.scrollWidth')
             assert wide <= width, f'the page is {wide} wide on {width}'
+            self.has_room(phone, width, height)
         before = phone.wait('viewer.camera')
         phone.touch('touchStart', [(400, 250)])
         for x in range(410, 500, 10):
@@ -207,12 +267,38 @@ class Access(Opened):
         phone.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {before["target"]}[i])) > 0.3')
         phone.wait("document.querySelector('.map-body').textContent.includes('two zoom')")
         assert 'wheel' not in phone.evaluate("document.querySelector('.map-body').textContent")
-        phone.press('#tabs button')
-        phone.wait("!document.getElementById('left').hidden")
-        box = phone.evaluate("['clientWidth', 'clientHeight'].map((side) => document.getElementById('stage')[side])")
-        assert min(box) > 150, f'the picture has {box} left'
         assert not phone.errors, phone.errors
         phone.close()
+
+    def has_room(self, phone, width, height):
+        """One row of buttons, and half of the screen for the picture, whatever is opened beside it."""
+        box = "document.getElementById('%s').getBoundingClientRect().toJSON()"
+        bar = phone.evaluate(box % 'bar')
+        tops = phone.evaluate("""[...document.querySelectorAll('#bar button')].filter((one) => one.offsetParent)
+            .map((one) => one.getBoundingClientRect())
+            .map(({ top, bottom, left, right }) => [top, bottom, left, right])""")
+        assert len(tops) == 4 and bar['height'] <= 48 and bar['width'] == width, (tops, bar)
+        assert all(0 <= top and bottom <= bar['bottom'] and bottom - top >= 32 for top, bottom, _, _ in tops), tops
+        assert all(one[3] <= two[2] for one, two in zip(tops, tops[1:])) and tops[-1][3] <= width, tops
+
+        def picture():
+            stage = phone.evaluate(box % 'stage')
+            return stage['width'] * stage['height'] / (width * height)
+
+        assert picture() > 0.75, picture()
+        phone.press('#more')
+        phone.wait("!document.getElementById('laboratory').hidden")
+        assert picture() >= 0.5, picture()
+        over = phone.evaluate(f"(({{ top, left }}, stage) => top < stage.bottom - 1 && left < stage.right - 1)"
+                              f"({box % 'laboratory'}, {box % 'stage'})")
+        assert not over, 'it lies over the picture'
+        phone.press('#tabs button')
+        phone.wait("!document.getElementById('left').hidden && document.getElementById('laboratory').hidden")
+        assert picture() >= 0.5, picture()
+        phone.press('#more')
+        phone.wait("document.getElementById('left').hidden && !document.getElementById('laboratory').hidden")
+        phone.press('#more')
+        phone.wait("document.getElementById('laboratory').hidden")
 
 
 if __name__ == '__main__':

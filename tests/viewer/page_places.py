@@ -3,7 +3,8 @@
 import json
 
 import wire
-from leaf import Opened, blur, camera, direction, far, on_stage, opened, press_text, rests, run, seen_at, state
+from leaf import (Opened, blur, camera, direction, far, on_stage, opened, press_choice, press_text, rests, run,
+                  seen_at, state)
 
 
 class Places(Opened):
@@ -25,7 +26,7 @@ class Places(Opened):
         before = page.evaluate(on_map)
         page.key('t')
         press_text(page, 'Rectangle')
-        page.drag(60, 250, 200, 370)
+        page.drag(60, 210, 200, 330)
         page.wait("document.querySelectorAll('table.ranking tbody tr').length > 2")
         assert page.evaluate(painted) > 100
         assert 'this rectangle of the picture' in page.evaluate("document.querySelector('.answer h3').textContent")
@@ -192,7 +193,7 @@ class Places(Opened):
             box.files = files.files;
             box.dispatchEvent(new Event('change'));
         })()''')
-        page.press('#moving button[data-name=fly]')
+        press_choice(page, 'fly')
         page.drag(300, 200, 330, 190)
         page.wait(f'Math.hypot(...viewer.camera.target.map((x, i) => x - {there["target"]}[i])) > 1')
         rests(page)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The picture under a button is the button's: until it comes, the old one is dimmed and says what it waits for."""
-from leaf import Opened, press_text, rests, run
+from leaf import Opened, press_choice, press_text, rests, run
 
 # Pictures that come are kept until release() shows the oldest; as long as none is shown, none of its pane follows.
 KEEP = '''(() => {
@@ -135,7 +135,7 @@ class Waits(Opened):
 
     def test_each_pane_waits_for_its_own(self):
         page = self.page
-        page.evaluate("document.querySelector('[role=radio][data-name=divider]').click()")
+        press_choice(page, 'divider')
         page.wait(f"viewer.state.layout === 'divider' && {AGREES}")
         page.evaluate('viewer.edit(1)')
         page.evaluate(KEEP)
@@ -149,7 +149,7 @@ class Waits(Opened):
         assert page.evaluate(SAYS)[1] == [True, 'illuminance: its frame failed', False]
         page.evaluate('free()')
         page.wait(AGREES)
-        page.evaluate("document.querySelector('[role=radio][data-name=single]').click()")
+        press_choice(page, 'single')
         page.wait(f"viewer.state.layout === 'single' && {AGREES}")
 
 

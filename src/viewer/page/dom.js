@@ -42,15 +42,6 @@ export class Choice {
         this.root = root;
         this.choose = choose;
         root.addEventListener('keydown', (event) => this.#key(event));
-        root.addEventListener('scroll', () => this.#fade());
-        new ResizeObserver(() => this.#fade()).observe(root);
-    }
-
-    // A row that scrolls shows at which end there is more of it.
-    #fade() {
-        const { scrollLeft, clientWidth, scrollWidth, classList } = this.root;
-        classList.toggle('more-before', scrollLeft > 1);
-        classList.toggle('more-after', scrollLeft + clientWidth < scrollWidth - 1);
     }
 
     // items: { name, text, title }
@@ -64,7 +55,6 @@ export class Choice {
             this.root.append(one);
         }
         this.set(this.#name);
-        this.#fade();
     }
 
     get names() {
@@ -76,15 +66,12 @@ export class Choice {
     }
 
     set(name) {
-        const changed = name !== this.#name;
         this.#name = name;
         const stop = this.#buttons.has(name) ? name : this.names[0];
         for (const [own, one] of this.#buttons) {
             one.setAttribute('aria-checked', own === name);
             one.tabIndex = own === stop ? 0 : -1;
         }
-        const chosen = this.#buttons.get(name);
-        if (changed && chosen) scrollInto(this.root, chosen);
     }
 
     #key(event) {
@@ -97,13 +84,6 @@ export class Choice {
         event.preventDefault();
         event.stopPropagation();
     }
-}
-
-// Scrolls a row sideways alone: scrollIntoView would move the page, too.
-function scrollInto(row, item) {
-    const left = item.offsetLeft - row.offsetLeft;
-    if (left < row.scrollLeft || left + item.offsetWidth > row.scrollLeft + row.clientWidth)
-        row.scrollLeft = left - (row.clientWidth - item.offsetWidth) / 2;
 }
 
 // A number for people: three figures, thousands apart.

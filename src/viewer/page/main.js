@@ -5,6 +5,7 @@ import { Panes } from './panes.js';
 import { Input, MOVING } from './input.js';
 import { Drawers, Settings } from './panels.js';
 import { Modes } from './modes.js';
+import { More } from './more.js';
 import { Legend, DifferenceLegend } from './legend.js';
 import { CityMap } from './map.js';
 import { Ask } from './ask.js';
@@ -26,9 +27,14 @@ const app = new App(connection);
 const status = new Status($('status'), $('loading'), $('toasts'), app);
 const panes = new Panes($('stage'), app);
 const input = new Input($('stage'), panes, app);
-const drawers = new Drawers($('tabs'), $('left'), $('right'), () => panes.draw());
+const more = new More($('more'), $('laboratory'), app, { moving: $('moving'), tabs: $('tabs') });
+const drawers = new Drawers($('tabs'), $('left'), $('right'), $('more'), (opened) => {
+    if (opened) more.yield();
+    panes.draw();
+});
+more.opened = () => ['left', 'right'].forEach((side) => drawers.close(side));
 new Settings(app, drawers, panes);
-new Modes($('modes'), app);
+new Modes($('views'), $('modes'), app);
 new Legend($('legend'), $('stage'), app);
 new DifferenceLegend($('legend-difference'), $('stage'), app);
 const map = new CityMap(app, drawers, (light) => ask.lamp(light));
@@ -142,7 +148,15 @@ const showHelp = () => help($('help'), told);
 function letGo() {
     const bare = document.body.classList.contains('bare');
     document.body.classList.remove('bare');
-    return bare || ask.cancelTool() || map.cancel() || photo.cancel() || drawers.back();
+    return (
+        bare ||
+        ask.cancelTool() ||
+        map.cancel() ||
+        photo.cancel() ||
+        more.close(true) ||
+        drawers.back() ||
+        more.close()
+    );
 }
 
 function fullScreen() {

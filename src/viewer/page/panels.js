@@ -6,9 +6,10 @@ import { Control, groupWords, same, toGroup } from './controls.js';
 export class Drawers {
     #panels = new Map();
 
-    // changed: told when a panel opens or closes.
-    constructor(tabs, left, right, changed) {
+    // home: what has the focus after a panel whose tab is not seen. changed(opened): told when a panel opens or closes.
+    constructor(tabs, left, right, home, changed) {
         this.tabs = tabs;
+        this.home = home;
         this.changed = changed;
         this.sides = { left, right };
         this.open = { left: null, right: null };
@@ -52,7 +53,7 @@ export class Drawers {
         this.newest = side;
         this.sides[side].hidden = false;
         panel.hidden = false;
-        this.#told(side);
+        this.#told(side, true);
         seen();
         if (focus) panel.querySelector('.panel-head button').focus({ preventScroll: true });
     }
@@ -66,14 +67,14 @@ export class Drawers {
         panel.hidden = true;
         this.sides[side].hidden = true;
         this.#told(side);
-        if (inside) tab.focus();
+        if (inside) (tab.offsetParent ? tab : this.home).focus();
     }
 
-    #told(side) {
+    #told(side, opened = false) {
         for (const [name, panel] of this.#panels)
             panel.tab.setAttribute('aria-expanded', this.open[panel.side] === name);
         document.body.classList.toggle(`${side}-open`, this.open[side] !== null);
-        this.changed();
+        this.changed(opened);
     }
 
     // The side whose panel has the focus; undefined: none.
