@@ -29,6 +29,7 @@ typedef struct view_city {
     bool classes;                 /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
     NOC_ARRAY(view_light) lights; /* around it */
     NOC_ARRAY(view_beside) beside;
+    double share; /* of the places that the search for a street tried */
     bool no_memory;
 } view_city;
 
@@ -427,42 +428,109 @@ static double street_look(view_city *city, const double eye[3], double aspect, d
     return best;
 }
 
-static bool street(view_city *city, double aspect, noc_camera *camera) {
-    enum { PLACES = 60, AROUND = 12, FALLBACK_GRID = 40 };
-    const noc_scene *scene = city->scene;
-    double best = 0, extent[2] = { city->max[0] - city->min[0], city->max[1] - city->min[1] };
-    camera->fov_deg = 55;
-    gather_lights(city, 250);
-    size_t lamps = 0, n = 0;
+enum { LIGHTS = 60, AROUND = 12, GRID = 40 }; /* lights, places beside each; edge of the grid over the city */
+
+/* Places that a round of the search tries. */
+typedef struct street_places {
+    bool grid;            /* over the city, instead of beside lights */
+    bool lamps;           /* beside lamps alone, rather than lit fronts */
+    size_t count, stride; /* of lights: each stride-th is chosen */
+    size_t edge;          /* of the grid */
+} street_places;
+
+static size_t place_count(const street_places *p) { return p->grid ? p->edge * p->edge : p->count * AROUND; }
+
+/* Fills eye with place i; false if it is beside a light that is not chosen. n: lights so far. */
+static bool place_of(const view_city *city, const street_places *p, size_t i, size_t *n, double eye[2]) {
+    if (p->grid) {
+        const double at[2] = { (double)(i % p->edge) + 0.5, (double)(i / p->edge) + 0.5 };
+        for (int k = 0; k < 2; k++)
+            eye[k] = city->min[k] + (city->max[k] - city->min[k]) * at[k] / (double)p->edge;
+        return true;
+    }
+    const view_light *light = &city->lights.data[i / AROUND];
+    if (p->lamps && !light->lamp)
+        return false;
+    *n += i % AROUND == 0;
+    if ((*n - 1) % p->stride)
+        return false;
+    double a = 2 * M_PI * (double)(i % AROUND) / AROUND + (double)(i / AROUND), r = 3 + 3.2 * (double)(i % AROUND % 3);
+    eye[0] = light->p[0] + r * cos(a);
+    eye[1] = light->p[1] + r * sin(a);
+    return true;
+}
+
+#define MOST_LOOKS 5e8 /* rays of one round times the triangles whose rectangles they are in: some seconds */
+#define MOST_RAYS 2500 /* that judging a place takes */
+
+/* Returns an estimate of how many triangles' upright rectangles contain a point, by SAMPLES * 16 triangles. */
+static double stacked_at(const noc_scene *s, const double p[2]) {
+    size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)16 * SAMPLES), found = 0;
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t *corners = s->indices.data + 3 * noc_scene_city_triangle(s, i * triangles / n);
+        bool in = true;
+        for (size_t k = 0; k < 2 && in; k++) {
+            float a = s->positions.data[3 * (size_t)corners[0] + k], b = s->positions.data[3 * (size_t)corners[1] + k],
+                  c = s->positions.data[3 * (size_t)corners[2] + k];
+            in = p[k] >= NOC_MIN(a, NOC_MIN(b, c)) && p[k] <= NOC_MAX(a, NOC_MAX(b, c));
+        }
+        found += in;
+    }
+    return n ? (double)found * (double)triangles / (double)n : 0;
+}
+
+/* Returns the share of the places that MOST_LOOKS allows. It depends on the scene alone, as the camera does. */
+static double affordable(const view_city *city, const street_places *p) {
+    enum { PROBES = 64 };
+    double stacked = 0, eye[2];
+    size_t places = 0, probes = 0, n = 0;
+    for (size_t i = 0; i < place_count(p); i++)
+        places += place_of(city, p, i, &n, eye);
+    n = 0;
+    for (size_t i = 0, k = 0; i < place_count(p); i++)
+        if (place_of(city, p, i, &n, eye) && k++ % (places / PROBES + 1) == 0) {
+            stacked += stacked_at(city->scene, eye);
+            probes++;
+        }
+    return stacked > 0 ? NOC_MIN(1, MOST_LOOKS / MOST_RAYS / (double)places / (stacked / (double)probes)) : 1;
+}
+
+/* Beside lamps (or lit fronts); if none of those places will do, on a grid over the city. */
+static street_places choose_places(view_city *city, bool grid) {
+    street_places p = { .grid = grid, .count = city->lights.len, .edge = GRID };
+    size_t lamps = 0;
     for (size_t i = 0; i < city->lights.len; i++)
         lamps += city->lights.data[i].lamp;
-    size_t of = lamps ? lamps : city->lights.len, stride = of / PLACES + 1;
-    /* beside lamps (or lit fronts); if none of those places will do, on a grid over the city */
+    size_t of = lamps ? lamps : city->lights.len;
+    p.lamps = lamps > 0;
+    p.stride = of / LIGHTS + 1;
+    double share = affordable(city, &p);
+    if (share < 1) {
+        p.stride = of / (size_t)NOC_MAX(2, LIGHTS * share) + 1;
+        p.edge = (size_t)NOC_MAX(4, GRID * sqrt(share));
+        city->share = NOC_MIN(city->share, share);
+    }
+    return p;
+}
+
+static bool street(view_city *city, double aspect, noc_camera *camera) {
+    double best = 0;
+    camera->fov_deg = 55;
+    gather_lights(city, 250);
     for (int round = 0; round < 2 && !(best > 0); round++) {
-        size_t count = round ? FALLBACK_GRID * FALLBACK_GRID : city->lights.len;
-        for (size_t i = 0; i < count; i++) {
-            if (!round && ((lamps && !city->lights.data[i].lamp) || n++ % stride))
+        street_places places = choose_places(city, round > 0);
+        for (size_t i = 0, n = 0; i < place_count(&places); i++) {
+            double eye[3], z, yaw = 0;
+            if (!place_of(city, &places, i, &n, eye) || !open_place(city->scene, eye[0], eye[1], &z))
                 continue;
-            for (int j = 0; j < (round ? 1 : AROUND); j++) {
-                double eye[3], z, yaw = 0, a = 2 * M_PI * j / AROUND + (double)i, r = 3 + 3.2 * (j % 3);
-                if (round) {
-                    eye[0] = city->min[0] + extent[0] * ((double)(i % FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
-                    eye[1] = city->min[1] + extent[1] * ((double)(i / FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
-                } else {
-                    eye[0] = city->lights.data[i].p[0] + r * cos(a);
-                    eye[1] = city->lights.data[i].p[1] + r * sin(a);
-                }
-                if (!open_place(scene, eye[0], eye[1], &z))
-                    continue;
-                eye[2] = z + 1.7;
-                double score = street_look(city, eye, aspect, camera->fov_deg, best * 1.0001, &yaw);
-                if (score > best * 1.0001) {
-                    best = score;
-                    memcpy(camera->eye, eye, sizeof(eye));
-                    camera->target[0] = eye[0] + 30 * cos(yaw);
-                    camera->target[1] = eye[1] + 30 * sin(yaw);
-                    camera->target[2] = eye[2] + 2.2; /* a little up: fronts rather than pavement */
-                }
+            eye[2] = z + 1.7;
+            double score = street_look(city, eye, aspect, camera->fov_deg, best * 1.0001, &yaw);
+            if (score > best * 1.0001) {
+                best = score;
+                memcpy(camera->eye, eye, sizeof(eye));
+                camera->target[0] = eye[0] + 30 * cos(yaw);
+                camera->target[1] = eye[1] + 30 * sin(yaw);
+                camera->target[2] = eye[2] + 2.2; /* a little up: fronts rather than pavement */
             }
         }
     }
@@ -502,7 +570,7 @@ static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspe
     }
     if (view != NOC_VIEWPOINT_OVERVIEW && noc_ground_ready(scene) != NOC_OK)
         return NOC_ERR_MEMORY;
-    view_city city = { .scene = scene };
+    view_city city = { .scene = scene, .share = 1 };
     noc_camera c = noc_camera_default();
     city_bounds(&city);
     find_classes(&city);
@@ -525,6 +593,11 @@ static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspe
     if (view == NOC_VIEWPOINT_STREET && (room || !found))
         noc_warn(scene->log, "view street: the scene has none, so it is seen from %s",
                  room ? "inside, as a room" : "outside");
+    if (city.share < 1)
+        noc_warn(scene->log,
+                 "camera: so many triangles lie over one another that the view was searched at %.2g %% of the places; "
+                 "--eye and --target choose another",
+                 100 * city.share);
     *camera = c;
     return NOC_OK;
 }

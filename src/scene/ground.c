@@ -10,7 +10,8 @@
  * add, and ask again (every lamp does) at a constant cost a triangle.
  *
  * Where many long and thin triangles overlap (a fan over a large round place), each is in the finer cells that it does
- * touch instead.
+ * touch instead. Long lists are sorted by the highest corner, so that a ray through a stack of triangles ends at the
+ * first that no other reaches over.
  *
  * Queries may come from several threads while the scene is not changed: bringing the grids up to date is locked. Models
  * and their instances are no ground, which does not move.
@@ -105,6 +106,7 @@ static size_t bucket_of(const struct noc_ground *g, int level, int64_t x, int64_
 
 enum { MOST_CELLS = 128 };
 #define CROWDED 1024 /* triangles of a bucket, beyond which they are put into finer cells */
+#define LONG 64      /* triangles of a bucket, beyond which they are sorted */
 
 /* The buckets that a triangle is in, 1 to 4, and its level. */
 static int buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t t, size_t buckets[MOST_CELLS],
@@ -207,6 +209,45 @@ static void fill_all(struct noc_ground *g, const noc_scene *scene, size_t triang
     }
 }
 
+typedef struct ranked_triangle {
+    float top; /* height of its highest corner */
+    uint32_t id;
+} ranked_triangle;
+
+static float top_of(const noc_scene *scene, size_t t) {
+    float a = corner(scene, t, 0)[2], b = corner(scene, t, 1)[2], c = corner(scene, t, 2)[2];
+    return NOC_MAX(a, NOC_MAX(b, c));
+}
+
+static int compare_ranked(const void *a, const void *b) {
+    const ranked_triangle *x = a, *y = b;
+    return x->top != y->top ? (x->top < y->top) - (x->top > y->top) : (x->id > y->id) - (x->id < y->id);
+}
+
+/* Sorts each list of more than LONG triangles, the highest first. Returns false if memory was refused. */
+static bool sort_long_lists(struct noc_ground *g, const noc_scene *scene) {
+    size_t most = 0;
+    for (size_t b = 0; b < g->buckets; b++)
+        most = NOC_MAX(most, (size_t)(g->offsets[b + 1] - g->offsets[b]));
+    if (most <= LONG)
+        return true;
+    ranked_triangle *ranked = noc_alloc(most * sizeof(*ranked));
+    if (!ranked)
+        return false;
+    for (size_t b = 0; b < g->buckets; b++) {
+        uint32_t *ids = g->ids + g->offsets[b], n = g->offsets[b + 1] - g->offsets[b];
+        if (n <= LONG)
+            continue;
+        for (uint32_t i = 0; i < n; i++)
+            ranked[i] = (ranked_triangle){ top_of(scene, ids[i]), ids[i] };
+        qsort(ranked, n, sizeof(*ranked), compare_ranked);
+        for (uint32_t i = 0; i < n; i++)
+            ids[i] = ranked[i].id;
+    }
+    free(ranked);
+    return true;
+}
+
 /* NULL: memory was refused. */
 static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles) {
     struct noc_ground *g = noc_calloc(1, sizeof(*g));
@@ -237,7 +278,7 @@ static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles)
     if (good)
         fill_all(g, scene, triangles, counts);
     free(counts);
-    if (good)
+    if (good && sort_long_lists(g, scene))
         return g;
     noc_ground_free(g);
     return NULL;
@@ -354,7 +395,9 @@ static void cast(vertical_ray *r) {
             continue;
         double scale = g->cells_a_metre[level];
         size_t b = bucket_of(g, level, (int64_t)floor(r->x * scale), (int64_t)floor(r->y * scale));
-        for (uint32_t i = g->offsets[b]; i < g->offsets[b + 1]; i++)
+        uint32_t first = g->offsets[b], end = g->offsets[b + 1];
+        bool sorted = end - first > LONG;
+        for (uint32_t i = first; i < end && !(sorted && r->best >= top_of(r->scene, g->ids[i])); i++)
             consider(r, g->ids[i]);
         for (uint32_t l = g->chains ? g->chains[b] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
             consider(r, g->links.data[l].triangle);

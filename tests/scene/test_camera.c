@@ -396,6 +396,39 @@ static void test_slits(void **state) {
     noc_scene_destroy(scene);
 }
 
+static noc_scene *stack_of_grounds(noc_log *log, int count) {
+    noc_scene *scene = noc_scene_create(log);
+    for (int i = 0; i < count; i++) {
+        noc_material m = noc_class_material(NOC_CLASS_GROUND);
+        const double p[12] = { 0, 0, .001 * i, 100, 0, .001 * i, 100, 100, .001 * i, 0, 100, .001 * i };
+        noc_mesh mesh = { .vertex_count = 4,
+                          .positions = p,
+                          .triangle_count = 2,
+                          .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                          .material = i ? 0 : noc_scene_add_material(scene, &m) };
+        assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+    }
+    return scene;
+}
+
+/* Of 1,600 places in 500 sheets of two triangles each, 500 million looks of 2,500 rays allow 200: one in eight. */
+static void test_stack_is_searched_in_part(void **state) {
+    for (int count = 20; count <= 500; count += 480) {
+        char warning[256] = "";
+        noc_log *log =
+            noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep_warning, .user = warning });
+        noc_scene *scene = stack_of_grounds(log, count);
+        noc_camera c;
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1.5, &c), NOC_OK);
+        check_sane(&c);
+        assert_true(fabs(c.eye[2] - .001 * (count - 1) - 1.7) < 1e-4); /* a person stands on the highest */
+        assert_int_equal(strstr(warning, "searched at 12 % of the places; --eye") != NULL, count == 500);
+        assert_int_equal(*warning != '\0', count == 500);
+        noc_scene_destroy(scene);
+        noc_log_destroy(log);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city),
                                         cmocka_unit_test(test_without_lights),
@@ -408,6 +441,7 @@ int main(void) {
                                         cmocka_unit_test(test_lamps_beyond_houses),
                                         cmocka_unit_test(test_odd_scenes),
                                         cmocka_unit_test(test_stray),
-                                        cmocka_unit_test(test_slits) };
+                                        cmocka_unit_test(test_slits),
+                                        cmocka_unit_test(test_stack_is_searched_in_part) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

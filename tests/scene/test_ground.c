@@ -294,6 +294,20 @@ static void test_two_continents(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* A ray through a stack looks at its top, whatever lies below; at all of it for a class that only the lowest has. */
+static void test_stack(void **ctx) {
+    noc_scene *scene = noc_scene_create(NULL);
+    int roof = material(scene, NOC_CLASS_ROOF), road = material(scene, NOC_CLASS_ROAD);
+    add_plane(scene, road, -50, -50, 50, 50, -1);
+    for (int i = 0; i < 1000; i++) /* in no order */
+        add_plane(scene, roof, -50, -50, 50, 50, i * 37 % 1000);
+    double z;
+    assert_true(noc_scene_top(scene, 3, 4, &z) && z == 999);
+    assert_true(noc_scene_ground(scene, 3, 4, &z) && z == -1);
+    assert_true(noc_ground_load(scene, 3, 4) < 20);
+    noc_scene_destroy(scene);
+}
+
 /* Long and thin triangles over one place, as those of a large round surface: a ray looks at few of them, and finds what
  * all of them hold. */
 static void test_thin(void **ctx) {
@@ -330,7 +344,7 @@ int main(void) {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
         cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),       cmocka_unit_test(test_two_continents),
-        cmocka_unit_test(test_thin),
+        cmocka_unit_test(test_thin),       cmocka_unit_test(test_stack),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
