@@ -74,6 +74,9 @@ typedef struct city_lamp_tally {
     size_t moved;     /* lamps put elsewhere than they were given: out of a building, away from another lamp */
     size_t classless; /* lamps that stand on what names no class, for want of a ground */
     size_t raised;    /* of those, the ones that stand 2 m or more above what is around them: on a roof, perhaps */
+    /* where the last lamp was whose facing was searched (searched), and what it faces, if it faces anything (faces) */
+    bool searched, faces;
+    double foot[3], facing[2];
 } city_lamp_tally;
 
 /* Lowest height of the scene, lamps aside; 0 if it is empty. */

@@ -216,6 +216,21 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     geo_issue(issues, GEO_GUESSED, "lamp outside of the ground: put at the lowest height of the scene", lamp->id);
 }
 
+/* As site_facing, which is not called again for the next lamp at the same place. */
+static bool face(const noc_scene *scene, city_lamp_tally *tally, placing *p) {
+    bool known = tally && tally->searched && memcmp(tally->foot, p->foot, sizeof(p->foot)) == 0;
+    bool faces = known ? tally->faces : site_facing(scene, p->foot[0], p->foot[1], p->foot[2], p->facing);
+    if (known)
+        memcpy(p->facing, tally->facing, sizeof(p->facing));
+    if (!tally)
+        return faces;
+    tally->searched = true;
+    tally->faces = faces;
+    memcpy(tally->foot, p->foot, sizeof(p->foot));
+    memcpy(tally->facing, p->facing, sizeof(p->facing));
+    return faces;
+}
+
 /* False if the lamp cannot be placed: counted. */
 static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, placing *p,
                   geo_issues *issues) {
@@ -257,7 +272,7 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     }
     if (params->tally)
         params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];
-    if (!faces && !site_facing(scene, p->foot[0], p->foot[1], p->foot[2], p->facing))
+    if (!faces && !face(scene, params->tally, p))
         arbitrary_facing(p->foot, p->facing);
     if (lamp->mount == GEO_MOUNT_WALL && !p->on_wall) { /* beside its wall: the bracket reaches back to it */
         p->on_wall = true;

@@ -71,12 +71,20 @@ bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, doub
     return false;
 }
 
-/* Sum of `count` directions on a ring in which something of the classes lies higher than min_z. */
+static void directions(int count, double d[][2]) {
+    for (int i = 0; i < count; i++) {
+        d[i][0] = sin(2 * M_PI * i / count);
+        d[i][1] = cos(2 * M_PI * i / count);
+    }
+}
+
+/* Sum of the directions on a ring in which something of the classes lies higher than min_z. */
 static double lies_there(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double r,
-                         int count, double sum[2]) {
+                         int count, double directions[][2], double sum[2]) {
     sum[0] = sum[1] = 0;
     for (int i = 0; i < count; i++) {
-        double d[2] = { sin(2 * M_PI * i / count), cos(2 * M_PI * i / count) }, top;
+        const double *d = directions[i];
+        double top;
         if (noc_scene_highest(scene, classes, x + r * d[0], y + r * d[1], &top) && top > min_z) {
             sum[0] += d[0];
             sum[1] += d[1];
@@ -88,11 +96,13 @@ static double lies_there(const noc_scene *scene, uint32_t classes, double x, dou
 /* Mean direction of what lies on the nearest ring where any does, to a degree: lamps shine that way. */
 static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach,
                     double mean[2]) {
-    double sum[2];
+    double sum[2], few[DIRECTIONS][2], many[FINE_DIRECTIONS][2];
+    directions(DIRECTIONS, few);
     for (double r = 1; r <= reach; r += 1) {
-        if (!(lies_there(scene, classes, x, y, min_z, r, DIRECTIONS, sum) > .1))
+        if (!(lies_there(scene, classes, x, y, min_z, r, DIRECTIONS, few, sum) > .1))
             continue; /* it lies all around, or nowhere */
-        double fine[2], l = lies_there(scene, classes, x, y, min_z, r + .5, FINE_DIRECTIONS, fine);
+        directions(FINE_DIRECTIONS, many);
+        double fine[2], l = lies_there(scene, classes, x, y, min_z, r + .5, FINE_DIRECTIONS, many, fine);
         bool found = l > 1; /* a thin edge may lie between the two rings */
         if (!found)
             l = hypot(sum[0], sum[1]);
