@@ -29,6 +29,7 @@ struct session {
     double sent[WIRE_PANES]; /* when a picture of a pane at rest went out last */
     int redraw;              /* 0, or 1 + panes_need: all panes are to be shown again */
     bool rested;             /* the last pictures are out: nothing is to be done */
+    bool missed;             /* a pane at rest got none of them, for the client was slow to show its pictures */
     int resting;             /* level of the pictures at rest so far */
     uint64_t version, told;  /* of the world: that pictures show, that the page knows */
     uint32_t shown;          /* the newest input that a picture shows, if only one pane's */

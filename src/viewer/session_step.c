@@ -151,8 +151,10 @@ static double step_resting(session *s) {
         s->resting = s->resting > 2 ? s->resting - 2 : 0;
     for (int i = 0; i < s->panes.count; i++) {
         pane *p = &s->panes.pane[i];
-        if (!panes_watched(&s->panes, i, now))
+        if (!panes_watched(&s->panes, i, now)) {
+            s->missed = true;
             continue;
+        }
         any = true;
         if (has_failed(s, i))
             continue;
@@ -183,6 +185,17 @@ static bool is_watched(session *s) {
     return watched;
 }
 
+/* Once all panes are shown again, each gets a picture of what is set now. */
+static void catch_up(session *s) {
+    bool watched = s->missed;
+    for (int i = 0; i < s->panes.count && watched; i++)
+        watched = panes_watched(&s->panes, i, session_now());
+    if (!watched)
+        return;
+    s->missed = s->rested = false;
+    s->redraw = 1 + PANES_FRAME;
+}
+
 double session_step(session *s) {
     if (is_watched(s))
         world_look(s->setup->world);
@@ -207,6 +220,7 @@ double session_step(session *s) {
         s->began = true;
         show_headlight(s);
     }
+    catch_up(s);
     if (!s->width || inbox_hidden(&s->in) || s->rested)
         return IDLE;
     return session_now() - s->moved < RESTS_AFTER ? step_moving(s) : step_resting(s);

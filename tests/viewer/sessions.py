@@ -144,6 +144,50 @@ def test_a_picture_tells_what_it_was_made_with(p):
     c.close()
 
 
+def test_a_pane_that_was_not_looked_at_catches_up(p):
+    """A client that is slow to show one pane's picture gets what was set meanwhile once it has."""
+    c = enter(p, 160, 90)
+    c.say("set", name="frames", value="2")
+    c.say("layout", n=1, name="divider")
+    kept = {}
+
+    def keeps(m):
+        """Acknowledges pictures of pane 0, and none of pane 1 that is of the layout."""
+        if isinstance(m, Picture) and m.kind == 1:
+            if m.pane and m.input:
+                kept[m.pane] = m.number
+            else:
+                c.say("ack", pane=m.pane, n=m.number)
+        return isinstance(m, Picture) and m.kind == 1 and m.pane == 0
+
+    while 1 not in kept:
+        c.wait_for(keeps, ack=False)
+    since = time.monotonic()
+    while time.monotonic() < since + 6:  # 5 s later nobody looks at it
+        try:
+            c.wait_for(keeps, ack=False, timeout=since + 6 - time.monotonic())
+        except socket.timeout:
+            pass
+    c.say("set", n=2, pane=-1, name="show", value="depth")
+    c.wait_for(lambda m: keeps(m) and m.input == 2 and not m.moving, ack=False)
+    try:  # until it rests
+        while True:
+            c.wait_for(keeps, ack=False, timeout=1)
+    except socket.timeout:
+        pass
+    c.say("ack", pane=1, n=kept[1])
+    told = {}
+
+    def wanted(m):
+        if isinstance(m, dict) and m["t"] == "stats":
+            told[m["pane"]] = m["show"]
+        return isinstance(m, Picture) and m.pane == 1 and m.input == 2
+
+    c.wait_for(wanted, timeout=20)
+    assert told[1] == "depth", told
+    c.close()
+
+
 def test_layouts(p):
     c = enter(p, 160, 90)
     for name, panes in ("divider", 2), ("methods", 6), ("difference", 3), ("single", 1):
