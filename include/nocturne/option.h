@@ -46,6 +46,9 @@ typedef struct noc_option {
     unsigned resets; /* noc_resets; of fields of noc_render_params */
     /* CHOICE: "old=a|older=b": other names of choices, which are taken and never told; may be NULL */
     const char *aliases;
+    /* REAL: other ways to write the number, such as "sqm:18.8". Fills *number and returns NULL, or returns what is
+     * wrong with the text; NULL: numbers alone */
+    const char *(*read)(const char *text, double *number);
 } noc_option;
 
 NOC_API const noc_option *noc_render_options(void);    /* fields of noc_render_params */

@@ -13,7 +13,7 @@
  *       make: on                    # --windows
  *       lit: 0.3
  *     sky:                          # options whose names begin with "environment-", and
- *       zenith: 0.02                # --sky; sky: 0.02 says it alone
+ *       zenith: sqm:18.8            # --sky; sky: sqm:18.8 says it alone
  *       environment: night.exr      # --environment
  *       light: on                   # --environment-light
  *     materials:                    # by class: noc_class_name

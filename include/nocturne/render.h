@@ -143,7 +143,7 @@ typedef struct noc_render_params {
     uint32_t seed;
     bool jitter;     /* sub-pixel positions change from frame to frame */
     bool accumulate; /* running mean over frames, else the last frame alone */
-    double sky;      /* luminance of the sky at the zenith, cd/m2; 0 = off */
+    double sky;      /* luminance of the sky at the zenith, cd/m2; 0 = off. Default: 18.8 mag/arcsec2 */
     bool emitters;   /* emitters seen directly are shown */
     bool gloss;      /* surfaces mirror, too; off: they reflect diffusely alone, and light is sampled for that */
     /* Of the map around the scene (noc_scene_set_environment), where it has one; it is the background then. A change of
@@ -167,13 +167,21 @@ typedef struct noc_render_params {
             set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) set(neighbours, 5)              \
                 set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) set(bias_rays, true)      \
                     set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) set(reject_normal, 0.9)    \
-                        set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) set(emitters, true)        \
+                        set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.0032) set(emitters, true)      \
                             set(gloss, true) set(environment_scale, 1) set(isa, NOC_ISA_AUTO)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
 #else
 #define noc_render_default_params() ((noc_render_params){ NOC_RENDER_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
+
+/* The sky's brightness as a sky quality meter tells it [mag/arcsec2], of its luminance [cd/m2]: L = 108,000 * 10^(-0.4
+ * m). noc_sky_sqm returns NaN for a luminance of 0. */
+NOC_API double noc_sky_luminance(double sqm);
+NOC_API double noc_sky_sqm(double luminance);
+/* Fills *luminance [cd/m2] from "sqm:18.8" (14 to 25 mag/arcsec2) or "bortle:7" (1 to 9: docs/defaults.md). Returns
+ * NULL, or what is wrong with the text: "is not ...". */
+NOC_API const char *noc_sky_read(const char *text, double *luminance);
 
 /* Settings for a purpose, chosen by measurement (docs/measurements.md, "Presets"). */
 typedef enum noc_preset {

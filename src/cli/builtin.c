@@ -44,6 +44,14 @@ void cli_note_chosen(const cli_args *args, noc_import_params *import) {
         import->lamp_chosen |= cli_given(args, lamp_defaults[i].option) ? 1u << i : 0;
 }
 
+void cli_print_sky(const char *heading, double sky) {
+    char a[64];
+    if (sky > 0)
+        printf("%s%s cd/m2 at the zenith, %.2f mag/arcsec2\n", heading, cli_number(a, sky), noc_sky_sqm(sky));
+    else
+        printf("%sdark\n", heading);
+}
+
 void cli_print_windows(const char *heading, const noc_window_counts *c) {
     char a[64], b[32];
     double area = 0;

@@ -138,6 +138,8 @@ void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
 /* "50 windows, 17 lit, 8.4 on 100 m2 of wall, 2.9 lit; walls without: 3 too small"; nothing where there are no walls */
 void cli_print_windows(const char *heading, const noc_window_counts *counts);
+/* The sky's luminance [cd/m2] at the zenith and its SQM value; "dark" for 0. */
+void cli_print_sky(const char *heading, double sky);
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import);
 

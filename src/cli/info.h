@@ -28,6 +28,7 @@ typedef struct info_city {
 } info_city;
 noc_status info_load(const info_args *args, const char *const *inputs, size_t count, noc_log *log, info_city *city);
 void info_city_end(info_city *city);
+double info_sky(const info_args *args); /* [cd/m2] at the zenith */
 void info_print_city(const info_city *city, const info_args *args);
 
 /* info_json.c */

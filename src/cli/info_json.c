@@ -250,6 +250,8 @@ noc_status info_json_city(const info_city *city, const info_args *args) {
     number("instances", (double)info->instances);
     number("instance_triangles", (double)info->instance_triangles);
     windows(&t->windows);
+    number("sky", info_sky(args));
+    number("sky_sqm", noc_sky_sqm(info_sky(args)));
     number("lights", (double)info->lights);
     number("lamps_mapped", (double)t->lamps_mapped);
     number("lamps_moved", (double)t->lamps_moved);

@@ -22,6 +22,16 @@ void info_city_end(info_city *city) {
     noc_scene_destroy(city->scene);
 }
 
+/* The sky that render draws: the recipe's, else the default. */
+double info_sky(const info_args *args) {
+    noc_render_params render = noc_render_default_params();
+    const noc_option *o;
+    for (size_t i = 0; (o = noc_recipe_option(args->common.recipe, i)); i++)
+        if (!strcmp(o->name, "sky"))
+            noc_recipe_set(args->common.recipe, o, &render, NULL); /* it was checked when it was read */
+    return render.sky;
+}
+
 static void print_lamps(const noc_report_totals *t) {
     char a[32];
     const struct {
@@ -69,6 +79,7 @@ void info_print_city(const info_city *city, const info_args *args) {
         printf("  %-11s %s that show %s\n", "instances", noc_text_count(a, info->instances),
                noc_text_many(b, info->instance_triangles, "triangle"));
     cli_print_windows("  windows     ", &t->windows);
+    cli_print_sky("  sky         ", info_sky(args));
     print_lamps(t);
     if (t->tracks || t->cars)
         printf("  %-11s %s, %s of them along roads\n", "cars", noc_text_count(a, t->cars),

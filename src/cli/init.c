@@ -284,7 +284,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
           "  overview: { view: overview }\n"
           "#  mine: { eye: [0, -30, 1.7], target: [0, 0, 5], fov: 60 }  # the summary of render tells a camera so\n"
           "\n# Any option of nocturne render by its name.\n"
-          "width: 1280\nheight: 720\n#sky: 0.02\n",
+          "width: 1280\nheight: 720\n#sky: sqm:18.8\n",
           out);
     return NOC_OK;
 }

@@ -233,6 +233,8 @@ noc_status cli_write_picture(render_job *job) {
         cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                    job->scene_info.origin[2]));
     add_options(&meta, args);
+    if (args->render.sky > 0 && !(args->render.environment_light && job->scene_info.environment_width))
+        add(&meta, "sky-sqm", cli_format("%.2f", noc_sky_sqm(args->render.sky)));
     if (!args->show && is_exr(job->file))
         add(&meta, "auto-ev100", cli_format("%.4f", auto_ev100(job)));
     if (args->show)
@@ -435,6 +437,8 @@ void cli_print_summary(const render_job *job) {
                scene->given_origin[1], scene->given_origin[2],
                strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
     print_map(job);
+    if (!(args->render.environment_light && scene->environment_width))
+        cli_print_sky("  sky       ", args->render.sky);
     print_lamps(job->report, &args->import);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],

@@ -48,7 +48,7 @@ static const noc_option render_options[] = {
     BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)", MEAN),
     BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone", MEAN),
     REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2",
-         "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off", MEAN),
+         "zenith: luminance, sqm:18.8 (mag/arcsec2) or bortle:5 (1 to 9); 0 = off", .read = noc_sky_read, MEAN),
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly", MEAN),
     BOOL(P, gloss, "gloss", "Picture", "surfaces mirror, too; off, as with --show illuminance: diffusely alone",
          SAMPLES),
@@ -388,7 +388,11 @@ static noc_status range_error(const noc_option *o, const char *value, noc_log *l
 
 static noc_status set_number(const noc_option *o, void *field, const char *value, noc_log *log) {
     double real;
-    if (!noc_parse_double(value, &real))
+    bool number = noc_parse_double(value, &real);
+    const char *wrong = number || !o->read ? NULL : o->read(value, &real);
+    if (wrong)
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " %s", o->name, QUOTED(value), wrong);
+    if (!number && !o->read)
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is not a number", o->name, QUOTED(value));
     if (!(real >= o->min && real <= o->max))
         return range_error(o, value, log);

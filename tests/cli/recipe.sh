@@ -158,6 +158,14 @@ grep -q 'CityGML' out && grep -q '^scene of 1 input' out && grep -q '^  objects 
     grep -q '^  windows     28 windows, 14 lit, 13.0 on 100 m2 of wall, 6.5 lit' out && grep -Eq '^    wall +24$' out &&
     grep -q '^  lamps       0 mapped, 1 inferred' out && grep -q '^  skipped     1 x ring with too few points' out
 result $? "info tells of a recipe's inputs, and of the scene that they make"
+{ cat sub/city.yaml && echo 'sky: bortle:4'; } >sub/dark.yaml
+run info --json sub/dark.yaml
+python3 -c 'import json
+scene = json.load(open("out"))["scene"]
+assert abs(scene["sky"] - 5.169e-4) < 1e-6 and abs(scene["sky_sqm"] - 20.8) < 1e-9, scene'
+result $? "and of its sky"
+run info sub/city.yaml
+grep -q '^  sky         0.0032 cd/m2 at the zenith, 18.82 mag/arcsec2' out; result $? "and of the sky that is assumed"
 mv out first.txt
 run info sub/city.yaml
 same "what it tells is the same each time" first.txt out

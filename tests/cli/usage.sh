@@ -37,6 +37,7 @@ expect "negative frames" 2 'frames: "-3" is outside 1 to 1000000000' render $c -
 expect "zero frames" 2 'frames: "0" is outside' render $c -o a.png --frames 0
 expect "too many frames" 2 'frames: "1e10" is outside' render $c -o a.png --frames 1e10
 expect "not a number" 2 'not a number' render $c -o a.png --sky nan
+expect "a sky that is no class" 2 'sky: "bortle:12" is not bortle:1 to bortle:9' render $c -o a.png --sky bortle:12
 expect "infinite" 2 'not a number' render $c -o a.png --sky inf
 expect "huge" 2 'not a number' render $c -o a.png --sky 1e400
 expect "unknown choice" 2 'method: "ristir" is none of reference\|is\|ris\|restir' render $c -o a.png --method ristir

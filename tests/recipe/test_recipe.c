@@ -62,7 +62,7 @@ static const char whole[] =
     "inputs: [a.gml, /b/c.osm, 'builtin:mess', '@list', '@/list']\n"
     "crs: EPSG:25832\n"
     "preset: interactive\n"
-    "sky: 0.01\n"
+    "sky: bortle:5\n"
     "jitter: off\n"
     "lights: 77\n"
     "lamps:\n"
@@ -121,7 +121,7 @@ static void test_all_that_it_says(void **state) {
     noc_render_params render = noc_render_default_params();
     assert_int_equal(noc_recipe_set(r, row(noc_render_options(), "sky"), &render, NULL), NOC_OK);
     assert_int_equal(noc_recipe_set(r, row(noc_render_options(), "jitter"), &render, NULL), NOC_OK);
-    assert_true(render.sky == 0.01 && !render.jitter);
+    assert_true(fabs(render.sky - 1.298446e-3) < 1e-8 && !render.jitter);
     noc_builtin_params builtin = noc_builtin_default_params();
     assert_int_equal(noc_recipe_set(r, row(noc_builtin_options(), "lights"), &builtin, NULL), NOC_OK);
     assert_int_equal(builtin.lights, 77);
@@ -296,6 +296,8 @@ static const struct {
     { HEAD "isolate: false\n", 3, "--isolate on the command line" },
     { HEAD "lod: [1, 2]\n", 3, "lod is one value" },
     { HEAD "sky: [1, 2]\n", 3, "sky must be keys" },
+    { HEAD "sky: bortle:10\n", 3, "is not bortle:1 to bortle:9" },
+    { HEAD "sky: {zenith: sqm:9}\n", 3, "is not sqm:14 to sqm:25" },
     { HEAD "sky: {zenit: 1}\n", 3, "no key zenit in sky; is it zenith?" },
     { HEAD "sky: {zenith: 1}\nenvironment-scale: 2\nsky: 2\n", 5, "twice" },
     { HEAD "sky:\n", 3, "sky has no value" },

@@ -365,6 +365,40 @@ static void texts_add_up(void **state) {
     assert_int_equal(import.lamps.count, NOC_TEXTS);
 }
 
+/* L = 108,000 * 10^(-0.4 m) cd/m2: 22 is 0.17 mcd/m2, 17 is 17 (lightpollution.pk.edu.pl). Classes are
+ * docs/defaults.md's. */
+static void skies_have_words(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double luminance, sqm;
+    } good[] = { { "sqm:22", 1.711685e-4, 22 },     { "sqm:17", 1.711685e-2, 17 },
+                 { "sqm:19.5", 1.711685e-3, 19.5 }, { "bortle:1", 1.876825e-4, 21.9 },
+                 { "bortle:5", 1.298446e-3, 19.8 }, { "bortle:9", 2.057898e-2, 16.8 },
+                 { "0.0108", .0108, 17.5 } };
+    static const char *const bad[] = { "sqm:13.9",  "sqm:25.1",   "sqm:",    "sqm:nan", "sqm:19x",  "bortle:0",
+                                       "bortle:10", "bortle:4.5", "bortle:", "bortle",  "Bortle:5", "dark" };
+    const noc_option *o = find(noc_render_options(), "sky");
+    double before = INFINITY;
+    for (size_t i = 0; i < NOC_COUNT(good); i++) {
+        assert_int_equal(noc_option_set(o, &render, good[i].text, NULL), NOC_OK);
+        assert_true(fabs(render.sky - good[i].luminance) < 1e-6 * good[i].luminance);
+        assert_true(fabs(noc_sky_sqm(render.sky) - good[i].sqm) < 1e-5);
+        assert_true(fabs(noc_sky_luminance(good[i].sqm) - render.sky) < 1e-6 * render.sky);
+    }
+    for (int class = 9; class >= 1; class --) {
+        char text[16];
+        snprintf(text, sizeof(text), "bortle:%d", class);
+        assert_int_equal(noc_option_set(o, &render, text, NULL), NOC_OK);
+        assert_true(render.sky < before);
+        before = render.sky;
+    }
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_option_set(o, &render, bad[i], NULL), NOC_ERR_ARGUMENT);
+    assert_true(render.sky == before && isnan(noc_sky_sqm(0)));
+    assert_true(fabs(noc_sky_sqm(noc_render_default_params().sky) - 18.8) < .05);
+}
+
 static void reals_survive_locales(void **state) {
     const noc_option *o = find(noc_render_options(), "sky");
     static const char *const locales[] = { "de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "cs_CZ.UTF-8", "C" };
@@ -397,6 +431,7 @@ int main(void) {
         cmocka_unit_test_setup(text_points_at_the_callers, setup),
         cmocka_unit_test_setup(texts_add_up, setup),
         cmocka_unit_test_setup(reals_survive_locales, setup),
+        cmocka_unit_test_setup(skies_have_words, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
