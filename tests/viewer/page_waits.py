@@ -149,6 +149,28 @@ class Waits(Opened):
         assert page.evaluate(SAYS)[1] == [True, 'illuminance: its frame failed', False]
         page.evaluate('free()')
         page.wait(AGREES)
+
+    def test_what_is_held_waits_for_another_mode_alone(self):
+        """A that is held is of other lamps, as it is meant to be, and lets go where it is to show something else."""
+        page = self.page
+        page.evaluate("(viewer.edit(0), viewer.set('show', 'picture', -1))")
+        page.wait(f"viewer.state.panes[1].values.show === 'picture' && {AGREES}")
+        rests(page, 2)
+        page.press('.hold')
+        page.wait(f"viewer.state.panes.every(({{ values }}) => values.exposure !== 'auto') && {AGREES}")
+        page.evaluate("viewer.setWorld('group.lamps', '0.5,2000K')")
+        page.wait("document.querySelector('.caption').textContent.includes('held')")
+        page.wait(f"viewer.state.world.values['group.lamps'] === '0.5,2000K' && {AGREES}")
+        assert 'held' in page.evaluate("document.querySelector('.caption').textContent")
+        page.evaluate(KEEP)
+        page.evaluate(MODE % 'illuminance')
+        assert page.evaluate(SAYS)[0] == [True, 'waiting for illuminance', False]
+        page.evaluate('free()')
+        page.wait(AGREES)
+        assert page.evaluate("document.querySelector('.hold').getAttribute('aria-pressed')") == 'false'
+        assert 'A shows another mode' in page.evaluate("document.getElementById('toasts').textContent")
+        page.evaluate("(viewer.setWorld('group.lamps', '1,own'), viewer.set('show', 'picture'))")
+        page.wait(f"viewer.state.world.values['group.lamps'] === '1,own' && {AGREES}")
         press_choice(page, 'single')
         page.wait(f"viewer.state.layout === 'single' && {AGREES}")
 
