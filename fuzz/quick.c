@@ -2,10 +2,14 @@
  * instrumented; what they allocate for themselves need not be looked at, and what they prepare and never use need not
  * be made. */
 #include "fuzz.h"
+#include "geo/crs_proj.h"
+#include "noc_config.h"
+#if NOC_HAVE_ASSIMP
+#include "import/mesh/assimp.h"
+#endif
 
 #include <ctype.h>
 #include <dlfcn.h>
-#include <proj.h>
 #include <sanitizer/lsan_interface.h>
 #include <sys/mman.h>
 
@@ -221,17 +225,24 @@ void *memset(void *p, int value, size_t size) {
 
 /* ---- Assimp leaks where it throws. What it allocates is not looked at. ---- */
 
-const void *aiImportFileExWithProperties(const char *name, unsigned flags, void *io, const void *settings);
-const void *aiImportFileExWithProperties(const char *name, unsigned flags, void *io, const void *settings) {
-    typedef const void *import(const char *, unsigned, void *, const void *);
-    static import *real;
-    if (!real)
-        real = (import *)dlsym(RTLD_NEXT, "aiImportFileExWithProperties");
+#if NOC_HAVE_ASSIMP
+static __typeof__(aiImportFileEx) *assimp_import;
+
+static const struct aiScene *import_file(const char *name, unsigned flags, struct aiFileIO *io) {
     __lsan_disable();
-    const void *scene = real ? real(name, flags, io, settings) : NULL;
+    const struct aiScene *scene = assimp_import(name, flags, io);
     __lsan_enable();
     return scene;
 }
+
+static void quicken_assimp(void) {
+    FUZZ_REQUIRE(!assimp_load());
+    assimp_import = assimp.aiImportFileEx;
+    assimp.aiImportFileEx = import_file;
+}
+#else
+static void quicken_assimp(void) {}
+#endif
 
 /* ---- PROJ, which for a text that it does not know looks through all names of its database (proj.py): one name
  * in 16 is looked for ---- */
@@ -251,25 +262,19 @@ static bool is_definition(const char *text) {
     return strstr(text, "proj=") || strstr(text, "init=") || !*text;
 }
 
-PJ *proj_create(PJ_CONTEXT *context, const char *text) {
-    static PJ *(*real)(PJ_CONTEXT *, const char *);
-    if (!real)
-        real = (PJ * (*)(PJ_CONTEXT *, const char *)) dlsym(RTLD_NEXT, "proj_create");
-    bool is = is_definition(text) || fuzz_seldom((const uint8_t *)text, strlen(text), 16);
-    return is && real ? real(context, text) : NULL;
-}
+static __typeof__(proj_create) *projs_create;
 
-/* Its factors of a CRS are those of a transform that it finds anew for each point, in 50 ms: for one place in 8.
- * Elsewhere lengths are true, as in a national CRS. */
-PJ_FACTORS proj_factors(PJ *pj, PJ_COORD at) {
-    static PJ_FACTORS (*real)(PJ *, PJ_COORD);
-    if (!real)
-        real = (PJ_FACTORS(*)(PJ *, PJ_COORD))dlsym(RTLD_NEXT, "proj_factors");
-    PJ_FACTORS same = { .meridional_scale = 1, .parallel_scale = 1, .areal_scale = 1 };
-    return real && fuzz_seldom((const uint8_t *)&at, sizeof(at), 8) ? real(pj, at) : same;
+static PJ *create(PJ_CONTEXT *context, const char *text) {
+    bool is = is_definition(text) || fuzz_seldom((const uint8_t *)text, strlen(text), 16);
+    return is ? projs_create(context, text) : NULL;
 }
 
 int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    /* with what it needs, SQLite, where the functions above find it and it finds them */
+    FUZZ_REQUIRE(dlopen(NOC_PROJ_LIBRARY, RTLD_NOW | RTLD_GLOBAL) && !proj_load());
+    projs_create = proj.proj_create;
+    proj.proj_create = create;
+    quicken_assimp();
     int (*configure)(int, ...) = (int (*)(int, ...))dlsym(RTLD_DEFAULT, "sqlite3_config");
     if (configure)
         FUZZ_REQUIRE(!configure(SQLITE_CONFIG_SINGLETHREAD) && !configure(SQLITE_CONFIG_MALLOC, &memory) &&

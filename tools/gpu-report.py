@@ -121,8 +121,8 @@ class Run:
         self.work = work
         self.number, self.kind, self.size = (read(work + "/chosen").split("\n") + ["", "", ""])[:3]
         self.steps = [line.split() for line in read(work + "/steps.txt").splitlines()]
-        line = re.search(r"^  vulkan *%s .*$" % re.escape(self.number or "0"), read(work + "/devices.out"), re.M)
-        name = re.sub(r"^  vulkan *\d+ \w+, ", "", line[0]) if line else "no device"
+        line = re.search(r"^vulkan *%s .*$" % re.escape(self.number or "0"), read(work + "/devices.out"), re.M)
+        name = re.sub(r"^vulkan *\d+ \w+, ", "", line[0]) if line else "no device"
         self.name, self.driver = name.rsplit(", ", 1) if ", " in name else (name, "")
         self.software = self.kind == "software"
         # On a processor that others use CPU time is the figure; a GPU's is by the clock.

@@ -130,17 +130,17 @@ run() {
     export NOC_SOURCE="$here" NOC_BUILD="$here/build" NOC_SHARED="$here/shared"
     cp "$here/commit" "$work/"
     program=$here/build/nocturne
-    step devices 60 "$program" --version
+    step devices 60 "$program" devices
     cp "$work/devices.out" "$out/devices.txt"
     nvidia-smi --query-gpu=name,driver_version,memory.total --format=csv,noheader >"$work/smi.out" 2>/dev/null
     # The device of this number, else of this name, else the first that is usable.
-    grep '^  vulkan *[0-9]* [^:]*$' "$work/devices.out" >"$work/usable.txt"
+    grep '^vulkan *[0-9]* [^:]*$' "$work/devices.out" >"$work/usable.txt"
     device=$({
-        grep "^  vulkan *${DEVICE:-none} " "$work/usable.txt"
+        grep "^vulkan *${DEVICE:-none} " "$work/usable.txt"
         grep -iF -- "${DEVICE:-}" "$work/usable.txt"
     } | awk 'NR == 1 { print $2 }')
     device=${device:-0}
-    kind=$(sed -n "s/^  vulkan *$device \([a-z]*\),.*/\1/p" "$work/devices.out")
+    kind=$(sed -n "s/^vulkan *$device \([a-z]*\),.*/\1/p" "$work/devices.out")
     size=1920x1080 frames=9
     [ "$kind" = software ] && size=96x54 frames=3
     size=${SIZE:-$size}

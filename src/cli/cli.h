@@ -45,7 +45,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_render, cli_view, cli_influence, cli_build, cli_info, cli_init, cli_compare,
-    cli_experiment, cli_bench;
+    cli_experiment, cli_bench, cli_devices;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 
@@ -118,7 +118,6 @@ int cli_interrupted(void); /* its number, 0 if there was none */
 double cli_now(void);      /* wall clock, seconds */
 
 /* devices.c */
-void cli_print_devices(void); /* a line a device */
 /* Refuses a device that is not there or not usable, before the long work: CLI_OK, or an exit status after reporting. */
 int cli_check_device(const cli_command *command, const noc_device_params *device);
 

@@ -1,20 +1,39 @@
-/* What --version prints of devices, and --backend and --device before the long work. */
+/* nocturne devices: what can render here. And --backend and --device of other commands before the long work. */
 #include "cli.h"
 
-/* A line a device: the backend, the number that --device takes, kind, name and driver, and why it is not usable. */
-void cli_print_devices(void) {
+static int run(void *arguments);
+
+static const cli_args defaults = { 0 };
+
+const cli_command cli_devices = {
+    "devices",
+    "",
+    "Lists what can render: the processor, and Vulkan devices.",
+    "A line a device: the backend, the number that --device takes, kind, name and\n"
+    "driver, and what keeps it from being used. Vulkan drivers are loaded for it.\n"
+    "Example\n"
+    "  nocturne devices\n",
+    { { cli_common_options, 0, NULL } },
+    sizeof(cli_args),
+    &defaults,
+    run,
+};
+
+static int run(void *arguments) {
+    const cli_args *args = arguments;
+    if (args->input_count)
+        return cli_usage(&cli_devices, "devices takes no files");
     noc_device_info devices[32];
     size_t count = noc_devices(devices, 32);
     char text[256];
-    puts("devices:");
     for (size_t i = 0; i < count && i < 32; i++) {
         const noc_device_info *d = &devices[i];
         const char *backend = noc_backend_name(d->backend);
         if (d->number < 0) {
-            printf("  %-6s none: %s\n", backend, noc_text_clean(text, sizeof(text), d->why));
+            printf("%-6s none: %s\n", backend, noc_text_clean(text, sizeof(text), d->why));
             continue;
         }
-        printf("  %-6s %d %s, %s", backend, d->number, noc_device_kind_name(d->kind),
+        printf("%-6s %d %s, %s", backend, d->number, noc_device_kind_name(d->kind),
                noc_text_clean(text, sizeof(text), d->name));
         if (*d->driver)
             printf(", %s", noc_text_clean(text, sizeof(text), d->driver));
@@ -22,6 +41,7 @@ void cli_print_devices(void) {
             printf(": not usable: %s", noc_text_clean(text, sizeof(text), d->why));
         putchar('\n');
     }
+    return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
 }
 
 int cli_check_device(const cli_command *command, const noc_device_params *device) {

@@ -11,7 +11,8 @@
 #include <unistd.h>
 
 const cli_command *const cli_commands[] = { &cli_render, &cli_view,    &cli_influence,  &cli_build, &cli_info,
-                                            &cli_init,   &cli_compare, &cli_experiment, &cli_bench, NULL };
+                                            &cli_init,   &cli_compare, &cli_experiment, &cli_bench, &cli_devices,
+                                            NULL };
 
 const cli_command *cli_find_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)
@@ -113,7 +114,6 @@ int main(int argc, char **argv) {
     if (!strcmp(name, "--version")) {
         printf("nocturne %s (%s, %s)\nisolation of foreign readers: %s\n", noc_version(), noc_features(),
                viewer_features(), noc_isolation());
-        cli_print_devices();
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
     if (!strcmp(name, "help") || !strcmp(name, "--help") || !strcmp(name, "-h"))

@@ -1,4 +1,4 @@
-/* Coordinate reference systems and transforms: with crs_files.c the only PROJ calls of the library. */
+/* Coordinate reference systems and transforms: with crs_files.c and crs_kept.c the only PROJ calls of the library. */
 #include "geo/crs_files.h"
 #include "geo/crs_kept.h"
 #include "geo/crs_spelling.h"
@@ -26,6 +26,8 @@ struct geo_crs {
 
 /* ---- reading a definition ---- */
 
+#define NO_DATABASE "PROJ finds no proj.db, its database: is PROJ_DATA right?"
+
 static bool same_name(const char *a, const char *b) {
     for (;; a++, b++) {
         while (*a && !isalnum((unsigned char)*a))
@@ -46,15 +48,15 @@ static PJ *create_free_form(PJ_CONTEXT *context, const char *definition, bool *r
         definition++;
     if (*definition == '+' && !strstr(definition, "+type=crs")) {
         char *text = noc_format("%s +type=crs", definition);
-        PJ *pj = text ? proj_create(context, text) : NULL;
+        PJ *pj = text ? proj.proj_create(context, text) : NULL;
         *refused = !text;
         free(text);
         return pj;
     }
     bool is_text = *definition == '+' || *definition == '{' || strchr(definition, '[') || strstr(definition, "+proj=");
-    PJ *pj = proj_create(context, definition);
-    if (pj && !is_text && !same_name(proj_get_name(pj), definition)) {
-        proj_destroy(pj);
+    PJ *pj = proj.proj_create(context, definition);
+    if (pj && !is_text && !same_name(proj.proj_get_name(pj), definition)) {
+        proj.proj_destroy(pj);
         return NULL;
     }
     return pj;
@@ -64,39 +66,39 @@ static PJ *create_registered(PJ_CONTEXT *context, const char *name) {
     const char *colon = strchr(name, ':');
     char authority[sizeof((crs_spelling){ 0 }.horizontal)];
     noc_snprintf(authority, sizeof(authority), "%.*s", (int)(colon - name), name);
-    PJ *pj = proj_create_from_database(context, authority, colon + 1, PJ_CATEGORY_CRS, false, NULL);
+    PJ *pj = proj.proj_create_from_database(context, authority, colon + 1, PJ_CATEGORY_CRS, false, NULL);
     /* codes of ESRI are often given as if they were EPSG's */
     if (!pj && !strcmp(authority, "EPSG"))
-        pj = proj_create_from_database(context, "ESRI", colon + 1, PJ_CATEGORY_CRS, false, NULL);
+        pj = proj.proj_create_from_database(context, "ESRI", colon + 1, PJ_CATEGORY_CRS, false, NULL);
     return pj;
 }
 
 static PJ *replace(PJ *old, PJ *new) {
-    proj_destroy(old);
+    proj.proj_destroy(old);
     return new;
 }
 
 /* Metres of one unit of an axis; 0 where there is no such axis. */
 static double axis_unit(PJ_CONTEXT *context, const PJ *crs, int axis) {
     double unit = 0;
-    PJ *cs = proj_crs_get_coordinate_system(context, crs);
-    if (!cs || !proj_cs_get_axis_info(context, cs, axis, NULL, NULL, NULL, &unit, NULL, NULL, NULL))
+    PJ *cs = proj.proj_crs_get_coordinate_system(context, crs);
+    if (!cs || !proj.proj_cs_get_axis_info(context, cs, axis, NULL, NULL, NULL, &unit, NULL, NULL, NULL))
         unit = 0;
-    proj_destroy(cs);
+    proj.proj_destroy(cs);
     return unit;
 }
 
 /* Leaves the horizontal part of crs->pj; notes the unit of heights where a vertical part or a third axis names one. */
 static void reduce_to_horizontal(geo_crs *crs) {
     PJ_CONTEXT *context = crs->context;
-    if (crs->pj && proj_get_type(crs->pj) == PJ_TYPE_COMPOUND_CRS) {
-        PJ *vertical = proj_crs_get_sub_crs(context, crs->pj, 1);
-        if (vertical && proj_get_type(vertical) == PJ_TYPE_BOUND_CRS)
-            vertical = replace(vertical, proj_get_source_crs(context, vertical));
+    if (crs->pj && proj.proj_get_type(crs->pj) == PJ_TYPE_COMPOUND_CRS) {
+        PJ *vertical = proj.proj_crs_get_sub_crs(context, crs->pj, 1);
+        if (vertical && proj.proj_get_type(vertical) == PJ_TYPE_BOUND_CRS)
+            vertical = replace(vertical, proj.proj_get_source_crs(context, vertical));
         if (vertical)
             crs->height_unit = axis_unit(context, vertical, 0);
-        proj_destroy(vertical);
-        crs->pj = replace(crs->pj, proj_crs_get_sub_crs(context, crs->pj, 0));
+        proj.proj_destroy(vertical);
+        crs->pj = replace(crs->pj, proj.proj_crs_get_sub_crs(context, crs->pj, 0));
     }
     if (!crs->pj)
         return;
@@ -115,16 +117,16 @@ static bool inspect(geo_crs *crs) {
     PJ_CONTEXT *context = crs->context;
     const PJ *pj = crs->pj;
     PJ *source = NULL;
-    if (proj_get_type(pj) == PJ_TYPE_BOUND_CRS)
-        pj = source = proj_get_source_crs(context, pj);
-    PJ_TYPE type = pj ? proj_get_type(pj) : PJ_TYPE_UNKNOWN;
+    if (proj.proj_get_type(pj) == PJ_TYPE_BOUND_CRS)
+        pj = source = proj.proj_get_source_crs(context, pj);
+    PJ_TYPE type = pj ? proj.proj_get_type(pj) : PJ_TYPE_UNKNOWN;
     crs->geographic = type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
     bool ok = crs->geographic || type == PJ_TYPE_PROJECTED_CRS;
-    PJ *cs = ok ? proj_crs_get_coordinate_system(context, pj) : NULL;
+    PJ *cs = ok ? proj.proj_crs_get_coordinate_system(context, pj) : NULL;
     const char *name0 = "", *direction0 = "", *direction1 = "";
     double unit0 = 0, unit1 = 0;
-    ok = cs && proj_cs_get_axis_info(context, cs, 0, &name0, NULL, &direction0, &unit0, NULL, NULL, NULL) &&
-         proj_cs_get_axis_info(context, cs, 1, NULL, NULL, &direction1, &unit1, NULL, NULL, NULL);
+    ok = cs && proj.proj_cs_get_axis_info(context, cs, 0, &name0, NULL, &direction0, &unit0, NULL, NULL, NULL) &&
+         proj.proj_cs_get_axis_info(context, cs, 1, NULL, NULL, &direction1, &unit1, NULL, NULL, NULL);
     if (ok) {
         bool polar = !is_direction(direction0, "east", "west") && !is_direction(direction1, "east", "west");
         crs->lat_first = polar ? !strncasecmp(name0, "northing", 8) : is_direction(direction0, "north", "south");
@@ -134,14 +136,15 @@ static bool inspect(geo_crs *crs) {
         /* Where nothing is said about heights: a projected CRS in feet has its heights in feet too. */
         if (!(crs->height_unit > 0))
             crs->height_unit = crs->geographic ? 1 : unit0;
-        crs->has_area = proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
-                        crs->west > -1000; /* -1000: not known */
-        const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0),
-                   *name = proj_get_name(pj);
+        crs->has_area =
+            proj.proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
+            crs->west > -1000; /* -1000: not known */
+        const char *authority = proj.proj_get_id_auth_name(pj, 0), *code = proj.proj_get_id_code(pj, 0),
+                   *name = proj.proj_get_name(pj);
         crs->name = authority && code ? noc_format("%s:%s (%s)", authority, code, name) : noc_strdup(name);
     }
-    proj_destroy(cs);
-    proj_destroy(source);
+    proj.proj_destroy(cs);
+    proj.proj_destroy(source);
     return ok;
 }
 
@@ -150,8 +153,8 @@ static bool make_free(geo_crs *crs) {
     PJ_CONTEXT *context = crs_context_take(false);
     if (!context)
         return false;
-    PJ *moved = crs->pj ? proj_clone(context, crs->pj) : NULL;
-    proj_destroy(crs->pj);
+    PJ *moved = crs->pj ? proj.proj_clone(context, crs->pj) : NULL;
+    proj.proj_destroy(crs->pj);
     crs_context_give(crs->context, true);
     crs->pj = moved;
     crs->context = context;
@@ -174,6 +177,9 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     crs_spelling spelling;
     bool registered = crs_spelling_parse(definition, &spelling), refused = false;
     char what[40];
+    const char *why_not = proj_load();
+    if (why_not)
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sno CRS can be read: %s", place, between, why_not);
     if (!(crs->context = crs_context_take(strict)))
         return no_memory(definition, place, log);
     crs->strict = strict;
@@ -185,13 +191,10 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
                          : create_free_form(crs->context, definition, &refused);
     if (refused)
         return no_memory(definition, place, log);
-    if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION")) {
-        proj_context_destroy(crs->context); /* others may find it */
+    if (!crs->pj && !proj.proj_context_get_database_metadata(crs->context, "EPSG.VERSION")) {
+        proj.proj_context_destroy(crs->context); /* others may find it */
         crs->context = NULL;
-        return noc_error(log, NOC_ERR_UNSUPPORTED,
-                         "%s%sPROJ finds no proj.db, its database, so no CRS can be read: is PROJ_DATA "
-                         "right?",
-                         place, between);
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sno CRS can be read: " NO_DATABASE, place, between);
     }
     if (!crs->pj)
         return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between,
@@ -199,9 +202,9 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     reduce_to_horizontal(crs);
     if (spelling.vertical[0]) {
         PJ *vertical = create_registered(crs->context, spelling.vertical);
-        if (vertical && proj_get_type(vertical) == PJ_TYPE_VERTICAL_CRS)
+        if (vertical && proj.proj_get_type(vertical) == PJ_TYPE_VERTICAL_CRS)
             crs->height_unit = axis_unit(crs->context, vertical, 0);
-        proj_destroy(vertical);
+        proj.proj_destroy(vertical);
     }
     if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what))
         return refuse(definition, what, place, log);
@@ -240,15 +243,18 @@ geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log
     return NULL;
 }
 
-noc_status geo_crs_database(void) {
+noc_status geo_crs_database(const char **why_not) {
+    if ((*why_not = proj_load()))
+        return NOC_ERR_UNSUPPORTED;
     PJ_CONTEXT *context = crs_context_take(true);
     if (!context)
         return NOC_ERR_MEMORY;
-    bool found = proj_context_get_database_metadata(context, "EPSG.VERSION") != NULL;
+    bool found = proj.proj_context_get_database_metadata(context, "EPSG.VERSION") != NULL;
     if (found)
         crs_context_give(context, true);
     else
-        proj_context_destroy(context); /* others may find it */
+        proj.proj_context_destroy(context); /* others may find it */
+    *why_not = NO_DATABASE;
     return found ? NOC_OK : NOC_ERR_UNSUPPORTED;
 }
 
@@ -269,7 +275,7 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
     copy->to_wgs84 = copy->to_degrees = NULL;
     copy->degrees = DEGREES_UNTOLD;
     copy->context = crs_context_take(false);
-    copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
+    copy->pj = copy->context ? proj.proj_clone(copy->context, crs->pj) : NULL;
     copy->name = noc_strdup(crs->name);
     copy->definition = noc_strdup(crs->definition);
     if (copy->pj && copy->name && copy->definition)
@@ -281,10 +287,12 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
 void geo_crs_destroy(geo_crs *crs) {
     if (!crs)
         return;
-    proj_destroy(crs->to_wgs84);
-    proj_destroy(crs->to_degrees);
-    proj_destroy(crs->pj);
-    crs_context_give(crs->context, crs->strict);
+    if (crs->context) { /* else PROJ may not be loaded, and made nothing */
+        proj.proj_destroy(crs->to_wgs84);
+        proj.proj_destroy(crs->to_degrees);
+        proj.proj_destroy(crs->pj);
+        crs_context_give(crs->context, crs->strict);
+    }
     free(crs->name);
     free(crs->definition);
     free(crs);
@@ -297,7 +305,7 @@ bool geo_crs_is_metric(const geo_crs *crs) { return crs->metric; }
 bool geo_crs_lat_first(const geo_crs *crs) { return crs->lat_first; }
 
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
-    return a && b && (a == b || proj_is_equivalent_to_with_ctx(a->context, a->pj, b->pj, PJ_COMP_EQUIVALENT));
+    return a && b && (a == b || proj.proj_is_equivalent_to_with_ctx(a->context, a->pj, b->pj, PJ_COMP_EQUIVALENT));
 }
 
 /* ---- area of use ---- */
@@ -308,10 +316,11 @@ bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
 static bool take_way(const geo_crs *crs, PJ *way, bool lat_first, double x, double y, double lonlat[2]) {
     if (!isfinite(x) || !isfinite(y) || (crs->geographic && fabs(y) > 400))
         return false;
-    PJ_COORD c = way ? proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL) : proj_coord(x, y, 0, 0);
+    PJ_COORD c = way ? proj.proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL)
+                     : proj.proj_coord(x, y, 0, 0);
     if (way) {
-        c = proj_trans(way, PJ_FWD, c);
-        proj_errno_reset(way);
+        c = proj.proj_trans(way, PJ_FWD, c);
+        proj.proj_errno_reset(way);
     }
     double lon = lat_first ? c.xy.y : c.xy.x, lat = lat_first ? c.xy.x : c.xy.y;
     if (!isfinite(lon) || fabs(lon) > FARTHEST_TURN || !isfinite(lat) || fabs(lat) > 90)
@@ -323,9 +332,9 @@ static bool take_way(const geo_crs *crs, PJ *way, bool lat_first, double x, doub
 
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
     if (!crs->to_wgs84 && !(crs->to_wgs84 = crs_kept(crs->context, crs->key, "OGC:CRS84"))) {
-        PJ *wgs84 = proj_create(crs->context, "OGC:CRS84");
-        crs->to_wgs84 = wgs84 ? proj_create_crs_to_crs_from_pj(crs->context, crs->pj, wgs84, NULL, NULL) : NULL;
-        proj_destroy(wgs84);
+        PJ *wgs84 = proj.proj_create(crs->context, "OGC:CRS84");
+        crs->to_wgs84 = wgs84 ? proj.proj_create_crs_to_crs_from_pj(crs->context, crs->pj, wgs84, NULL, NULL) : NULL;
+        proj.proj_destroy(wgs84);
         crs_keep(crs->to_wgs84, crs->key, "OGC:CRS84");
     }
     return crs->to_wgs84 && take_way(crs, crs->to_wgs84, false, x, y, lonlat);
@@ -334,29 +343,29 @@ bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
 /* Is this geographic CRS in degrees from Greenwich? */
 static bool from_greenwich(PJ_CONTEXT *context, const PJ *geographic) {
     double longitude = NAN;
-    PJ *meridian = proj_get_prime_meridian(context, geographic);
-    bool told = meridian && proj_prime_meridian_get_parameters(context, meridian, &longitude, NULL, NULL);
-    proj_destroy(meridian);
+    PJ *meridian = proj.proj_get_prime_meridian(context, geographic);
+    bool told = meridian && proj.proj_prime_meridian_get_parameters(context, meridian, &longitude, NULL, NULL);
+    proj.proj_destroy(meridian);
     double unit = axis_unit(context, geographic, 0);
     return told && longitude == 0 && fabs(unit - M_PI / 180) < 1e-12;
 }
 
 static void find_degrees(geo_crs *crs) {
     PJ_CONTEXT *context = crs->context;
-    bool plain = proj_get_type(crs->pj) != PJ_TYPE_BOUND_CRS;
-    PJ *own = plain ? proj_crs_get_geodetic_crs(context, crs->pj) : NULL;
-    PJ *cs = own ? proj_crs_get_coordinate_system(context, own) : NULL;
+    bool plain = proj.proj_get_type(crs->pj) != PJ_TYPE_BOUND_CRS;
+    PJ *own = plain ? proj.proj_crs_get_geodetic_crs(context, crs->pj) : NULL;
+    PJ *cs = own ? proj.proj_crs_get_coordinate_system(context, own) : NULL;
     const char *direction = "";
-    bool known = cs && proj_cs_get_axis_info(context, cs, 0, NULL, NULL, &direction, NULL, NULL, NULL, NULL) &&
+    bool known = cs && proj.proj_cs_get_axis_info(context, cs, 0, NULL, NULL, &direction, NULL, NULL, NULL, NULL) &&
                  from_greenwich(context, own);
     if (known && !crs->geographic) {
         crs->degrees_lat_first = noc_ieq(direction, "north");
-        crs->to_degrees = proj_create_crs_to_crs_from_pj(context, crs->pj, own, NULL, NULL);
+        crs->to_degrees = proj.proj_create_crs_to_crs_from_pj(context, crs->pj, own, NULL, NULL);
         known = crs->to_degrees != NULL;
     }
     crs->degrees = known ? DEGREES_OWN : DEGREES_NONE;
-    proj_destroy(cs);
-    proj_destroy(own);
+    proj.proj_destroy(cs);
+    proj.proj_destroy(own);
 }
 
 /* In degrees of the CRS's own datum. PROJ searches its database for a way to another one, 4 to 40 ms. */
@@ -385,9 +394,9 @@ double geo_crs_outside(geo_crs *crs, double x, double y) {
 
 /* Semi-axes in metres; false where they are not told. */
 static bool ellipsoid(const geo_crs *crs, double *a, double *b) {
-    PJ *pj = proj_get_ellipsoid(crs->context, crs->pj);
-    bool told = pj && proj_ellipsoid_get_parameters(crs->context, pj, a, b, NULL, NULL) && *a > 0 && *b > 0;
-    proj_destroy(pj);
+    PJ *pj = proj.proj_get_ellipsoid(crs->context, crs->pj);
+    bool told = pj && proj.proj_ellipsoid_get_parameters(crs->context, pj, a, b, NULL, NULL) && *a > 0 && *b > 0;
+    proj.proj_destroy(pj);
     return told;
 }
 
@@ -437,7 +446,7 @@ static noc_status make_transform(geo_transform *t, const geo_crs *from, const ge
     if (!t->names || !t->context)
         return noc_no_memory(log, "transformation");
     if (!(t->pj = crs_kept(t->context, from->key, to->key))) {
-        t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
+        t->pj = proj.proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
         crs_keep(t->pj, from->key, to->key);
     }
     return t->pj
@@ -459,21 +468,23 @@ geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_
 void geo_transform_destroy(geo_transform *t) {
     if (!t)
         return;
-    proj_destroy(t->pj);
-    crs_context_give(t->context, false);
+    if (t->context) {
+        proj.proj_destroy(t->pj);
+        crs_context_give(t->context, false);
+    }
     free(t->names);
     free(t);
 }
 
 /* Where PROJ knows no path between two datums it takes them for one: that may be 100 m off, so it is said once. */
 static void check_accuracy(geo_transform *t) {
-    PJ *used = proj_trans_get_last_used_operation(t->pj);
+    PJ *used = proj.proj_trans_get_last_used_operation(t->pj);
     if (!used)
         return;
-    if (proj_coordoperation_has_ballpark_transformation(t->context, used))
+    if (proj.proj_coordoperation_has_ballpark_transformation(t->context, used))
         noc_warn(t->log, "%s: no datum shift is known here, positions may be off by up to a few hundred metres",
                  t->names);
-    proj_destroy(used);
+    proj.proj_destroy(used);
     free(t->names);
     t->names = NULL;
 }
@@ -486,9 +497,9 @@ size_t geo_transform_points(geo_transform *t, double *xyz, size_t count) {
     if (t->pj && count) {
         double *first = xyz + t->swap_from, *second = xyz + !t->swap_from;
         /* without z: it is the height's own business, and NaN there (a lamp on the ground) must not spoil x and y */
-        proj_trans_generic(t->pj, PJ_FWD, first, 3 * sizeof(double), count, second, 3 * sizeof(double), count, NULL, 0,
-                           0, NULL, 0, 0);
-        proj_errno_reset(t->pj);
+        proj.proj_trans_generic(t->pj, PJ_FWD, first, 3 * sizeof(double), count, second, 3 * sizeof(double), count,
+                                NULL, 0, 0, NULL, 0, 0);
+        proj.proj_errno_reset(t->pj);
     }
     for (size_t i = 0; i < count; i++) {
         double *p = xyz + 3 * i;

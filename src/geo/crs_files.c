@@ -62,12 +62,12 @@ static void ignore_message(void *user, int level, const char *text) {
 PJ_CONTEXT *crs_context_create(bool strict) {
     static const PROJ_FILE_API files = { 1,        on_open,   on_read,  on_write,  on_seek,  on_tell,
                                          on_close, on_exists, on_mkdir, on_unlink, on_rename };
-    PJ_CONTEXT *context = proj_context_create();
+    PJ_CONTEXT *context = proj.proj_context_create();
     if (!context)
         return NULL;
-    proj_log_func(context, NULL, ignore_message);
-    proj_context_set_fileapi(context, &files, (void *)(strict ? strict_files : all_files));
-    proj_context_set_enable_network(context, 0); /* grids that are not installed are not fetched */
+    proj.proj_log_func(context, NULL, ignore_message);
+    proj.proj_context_set_fileapi(context, &files, (void *)(strict ? strict_files : all_files));
+    proj.proj_context_set_enable_network(context, 0); /* grids that are not installed are not fetched */
     return context;
 }
 
@@ -190,7 +190,7 @@ bool crs_text_names_file(const char *definition, char what[40]) {
 
 bool crs_names_file(PJ_CONTEXT *context, const PJ *crs, char what[40]) {
     static const char parameter[] = "PARAMETERFILE[";
-    const char *wkt = proj_as_wkt(context, crs, PJ_WKT2_2019, NULL);
+    const char *wkt = proj.proj_as_wkt(context, crs, PJ_WKT2_2019, NULL);
     if (!wkt)
         return say(what, "what cannot be written as WKT", 29);
     for (const char *p = wkt; (p = strstr(p, parameter)); p++) {

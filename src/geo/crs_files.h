@@ -3,8 +3,7 @@
 #define NOC_GEO_CRS_FILES_H
 
 #include "base/base.h"
-
-#include <proj.h>
+#include "geo/crs_proj.h"
 
 /* A context that never asks a network, says nothing, and opens regular files alone (a pipe would hang it): all of them,
  * or, strict, none but PROJ's database. NULL: memory was refused. */

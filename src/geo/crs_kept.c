@@ -38,7 +38,7 @@ void crs_context_give(PJ_CONTEXT *context, bool strict) {
         idle[strict][idle_count[strict]++] = context;
     pthread_mutex_unlock(&lock);
     if (!taken)
-        proj_context_destroy(context);
+        proj.proj_context_destroy(context);
 }
 
 /* Under the lock: the one of these keys, or NULL. */
@@ -52,7 +52,7 @@ static struct kept *find(const char *from, const char *to) {
 PJ *crs_kept(PJ_CONTEXT *context, const char *from, const char *to) {
     pthread_mutex_lock(&lock);
     struct kept *k = find(from, to);
-    PJ *copy = k ? proj_clone(context, k->pj) : NULL;
+    PJ *copy = k ? proj.proj_clone(context, k->pj) : NULL;
     if (k)
         k->used = ++uses;
     pthread_mutex_unlock(&lock);
@@ -69,9 +69,9 @@ void crs_keep(const PJ *pj, const char *from, const char *to) {
     for (int i = 1; i < COPIES; i++)
         if (kept[i].used < k->used)
             k = &kept[i];
-    PJ *copy = keeper && !find(from, to) ? proj_clone(keeper, pj) : NULL;
+    PJ *copy = keeper && !find(from, to) ? proj.proj_clone(keeper, pj) : NULL;
     if (copy) {
-        proj_destroy(k->pj);
+        proj.proj_destroy(k->pj);
         k->pj = copy;
         k->used = ++uses;
         strcpy(k->from, from);

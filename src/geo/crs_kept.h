@@ -5,8 +5,7 @@
 #define NOC_GEO_CRS_KEPT_H
 
 #include "base/base.h"
-
-#include <proj.h>
+#include "geo/crs_proj.h"
 
 /* A context as crs_context_create makes it, the caller's until it is given back. NULL where memory is refused. */
 PJ_CONTEXT *crs_context_take(bool strict);

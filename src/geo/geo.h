@@ -29,9 +29,9 @@ bool geo_crs_lat_first(const geo_crs *crs); /* the authority's order is northing
 /* The first thing in a text that makes a library which takes it for a CRS open a file: a grid, a file of definitions;
  * copied to what. False if there is none. */
 bool geo_crs_text_names_file(const char *text, char what[40]);
-/* Does PROJ find its database, without which no CRS can be read? NOC_ERR_UNSUPPORTED, not reported: it does not.
- * NOC_ERR_MEMORY: it could not be asked. */
-noc_status geo_crs_database(void);
+/* Is PROJ there, and finds it its database, without which no CRS can be read? NOC_ERR_UNSUPPORTED, not reported: it is
+ * not, and why_not says which. NOC_ERR_MEMORY: it could not be asked. */
+noc_status geo_crs_database(const char **why_not);
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
 /* Longitude and latitude (degrees, WGS 84) of a point given easting northing; false if it has none. Not thread-safe. */
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);

@@ -267,7 +267,7 @@ static const noc_option device_options[] = {
     INT(P, threads, "threads", "Device", 0, 1024, "", "threads of the processor; 0 = one a core"),
     CHOICE(P, backend, "backend", "Device", "embree|vulkan|auto",
            "what renders: processor or GPU; auto: a GPU with ray tracing, if any", .aliases = "cpu=embree"),
-    TEXT(P, device, "device", "Device", "GPU", "vulkan: part of a GPU's name, or its number (nocturne --version)"),
+    TEXT(P, device, "device", "Device", "GPU", "vulkan: part of a GPU's name, or its number (nocturne devices)"),
     END,
 };
 #undef P

@@ -151,7 +151,7 @@ run bench empty.obj
 test $status = 1 && test ! -s out && grep -q '^nocturne: ' err; result $? "an input without a surface"
 
 # ---- the Vulkan backend ----
-if "$program" --version | grep -Eq '^  vulkan [0-9]+ [a-z]+, [^:]*$'; then
+if "$program" devices | grep -Eq '^vulkan [0-9]+ [a-z]+, [^:]*$'; then
     run bench builtin:city --city-size 150 --backend vulkan --only candidates --size 32x18 --frames 1 --json
     test $status = 0 && python3 - 2>why <<'CHECK'
 import json

@@ -6,8 +6,13 @@ tests_driver=${VK_DRIVER_FILES:-}
 export VK_DRIVER_FILES="$work/no-driver.json"
 small="builtin:city --city-size 150 --size 32x18 --frames 1"
 
-run --version
-grep -Eq '^  embree 0 processor, .' out && grep -Eq '^  vulkan none: .' out; result $? "--version lists devices"
+run devices
+test $status = 0 && grep -Eq '^embree 0 processor, .' out && grep -Eq '^vulkan none: .' out
+result $? "devices are listed"
+expect "devices of a file" 2 'devices takes no files' devices city.gml
+LD_DEBUG=files run --version
+test $status = 0 && grep -q libnocturne err && ! grep -Eiq 'lib(vulkan|proj|gdal|assimp)[.-]' err
+result $? "--version loads neither Vulkan nor what reads files" "$(grep -Ei 'lib(vulkan|proj|gdal|assimp)[.-]' err)"
 
 # refused NAME PATTERN ARGUMENT...: one line, and nothing written
 refused() {
@@ -84,7 +89,7 @@ for command in 'compare a.png b.png' 'build builtin:single -o a.noct' 'info buil
 done >taken
 test ! -s taken; result $? "commands that do not render take neither" "$(cat taken)"
 
-if VK_DRIVER_FILES=$tests_driver "$program" --version | grep -Eq '^  vulkan 0 software, [^:]*$'; then
+if VK_DRIVER_FILES=$tests_driver "$program" devices | grep -Eq '^vulkan 0 software, [^:]*$'; then
     export VK_DRIVER_FILES="$tests_driver"
     test "$(each --backend vulkan --device 9 | sed 's/; devices: 0 .*//')" = \
         '2 nocturne: device: "9" is neither number nor part of a name' &&

@@ -216,6 +216,31 @@ if [ "$("$program" --version | grep -ci 'gdal [0-9]')" != 0 ] && ! ldd "$program
 else
     skip "a missing GDAL" "no GDAL, or a sanitizer"
 fi
+# PROJ, where a CRS is read; Assimp, where an OBJ is.
+if ! ldd "$program" | grep -q lib[at]san; then
+    library=$(sed -n 's/#define NOC_PROJ_LIBRARY "\(.*\)"/\1/p' "$NOC_BUILD/noc_config.h")
+    mkdir without && echo "no library" >"without/$library"
+    export LD_LIBRARY_PATH="$work/without"
+    run info builtin:single
+    result $status "a built-in scene needs no PROJ"
+    expect "a CityGML without it" 1 "the CRS .* cannot be read: PROJ cannot be loaded: .*$library" info "$gml"
+    expect "--crs without it" 1 "^nocturne: --crs: no CRS can be read: PROJ cannot be loaded: .*$library" info \
+        "$gml" --crs EPSG:25832
+    library=$(sed -n 's/#define NOC_ASSIMP_LIBRARY "\(.*\)"/\1/p' "$NOC_BUILD/noc_config.h")
+    if [ "$library" ]; then
+        echo "no library" >"without/$library"
+        printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
+        for how in "" --no-isolate; do
+            expect "an OBJ without Assimp${how:+, in the process itself}" 1 \
+                "^nocturne: triangle.obj: OBJ needs Assimp, which cannot be loaded: .*$library" info $how triangle.obj
+        done
+    else
+        skip "a missing Assimp" "no Assimp"
+    fi
+    unset LD_LIBRARY_PATH
+else
+    skip "missing PROJ and Assimp" "a sanitizer"
+fi
 
 # Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv

@@ -96,7 +96,7 @@ test $status = 0 && grep -aq embree both/pictures/*.exr; result $? "and so do pi
 NOCTURNE_ISA=scalar run experiment one.json -o other --cache cache
 test $status = 0 && grep -q ', 2 of them made now' out && grep -q 'rendered by embree, .*, NOCTURNE_ISA=scalar' \
     other/report.md; result $? "nor are rows of another instruction set" "$(cat out)"
-if "$program" --version | grep '^ *vulkan [0-9]' | grep -qv 'not usable'; then
+if "$program" devices | grep '^vulkan [0-9]' | grep -qv 'not usable'; then
     cp both/results.csv both.csv
     run experiment shown.json -o both --cache cache --backend vulkan
     test $status = 0 && grep -q '2 rows of results.csv came from other settings' err &&

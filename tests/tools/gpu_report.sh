@@ -12,7 +12,7 @@ cat >"$pack/build/nocturne" <<'PROGRAM'
 echo "$*" >>"$ASKED"
 case "$*" in *"${SLOW:-nothing}"*) exec sleep 12 ;; esac
 case "$*" in
---version) printf 'nocturne 0.1.0\ndevices:\n  embree 0 processor, P\n%s\n' "$DEVICES" ;;
+devices) printf 'embree 0 processor, P\n%s\n' "$DEVICES" ;;
 *lights*) echo 'nocturne: vulkan: the device is lost' >&2; exit 1 ;;
 bench*) while [ "$1" != -o ]; do shift; done; cp "$BENCH" "$2" ;;
 experiment*) while [ "$1" != -o ]; do shift; done; mkdir -p "$2"; cp "$ROWS" "$2/results.csv" ;;
@@ -65,8 +65,8 @@ says() {
     done
 }
 
-report '  vulkan 0 discrete, NVIDIA GeForce RTX 3060, NVIDIA 550.54
-  vulkan 1 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
+report 'vulkan 0 discrete, NVIDIA GeForce RTX 3060, NVIDIA 550.54
+vulkan 1 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
 test "$page" = made/nvidia-geforce-rtx-3060.md && says '# NVIDIA GeForce RTX 3060' 'NVIDIA 550.54, discrete' \
     'Commit: 1234567' 'Pictures: 1920x1080 px'
 result $? "a page is called after the card, and names its driver"
@@ -82,7 +82,7 @@ says '| SRIS #40 | 4 (1.5, 2.5) | 94 / 96 / 100 | 7.69 (6.2) |'
 result $? "windows over lamps beside the thesis, first frames apart"
 says '| ReSTIR | 5 | 1.2 | 1.5 | 33 / 33 / 33 |'
 result $? "cars that drive over cars at rest, by medians of last frames"
-grep -v -- --version asked | sed 's/ --.*-only / /; s/ --.*//; s/,.*//; s|[^ ]*/||' >order
+grep -v "^devices" asked | sed 's/ --.*-only / /; s/ --.*//; s/,.*//; s|[^ ]*/||' >order
 printf '%s\n' 'bench floor' 'experiment frame-times-sized.json' 'bench lights' 'experiment cars-sized.json' \
     'bench floor' | diff - order >err
 result $? "rows are measured in order of worth, after the tests"
@@ -99,25 +99,25 @@ result $? "specs are those of the report's size"
 test "$(ls made | wc -l)" -le 8 && grep -q '^==> steps.txt' made/log.txt; result $? "few files, and a log"
 
 : >"$pack/tests.txt" # the others are of devices
-report '  vulkan 0 discrete, NVIDIA H100 80GB HBM3, NVIDIA 580.159' 0
+report 'vulkan 0 discrete, NVIDIA H100 80GB HBM3, NVIDIA 580.159' 0
 says 'This chip has no ray-tracing cores' 'say nothing of a card that has such cores, as the thesis'
 result $? "an H100's figures say nothing of an RTX 3060, and the page does"
-report '  vulkan 0 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
+report 'vulkan 0 software, llvmpipe (LLVM 15.0.6, 256 bits), Mesa 25.0.7' 60
 says 'This is software on a processor, no GPU' '| restir-uniform, street | 20 | 2 |' 'Thread time' 'Pictures: 96x54 px'
 result $? "software says so, is timed by the processor, and draws small pictures"
-report '  vulkan 0 discrete, X: not usable: no ray tracing
-  vulkan 1 integrated, Y, Z 1' 0
+report 'vulkan 0 discrete, X: not usable: no ray tracing
+vulkan 1 integrated, Y, Z 1' 0
 says '# Y'; result $? "what is not usable is passed by"
 for wanted in 1 3060 'rtx 3060'; do
-    DEVICE=$wanted report '  vulkan 0 discrete, Y, Z 1
-  vulkan 1 discrete, NVIDIA GeForce RTX 3060, D' 0
+    DEVICE=$wanted report 'vulkan 0 discrete, Y, Z 1
+vulkan 1 discrete, NVIDIA GeForce RTX 3060, D' 0
     says '# NVIDIA GeForce RTX 3060' 2>/dev/null || echo "$wanted" >>unnamed
 done
 test ! -e unnamed; result $? "DEVICE is a number or a part of a name" "$(cat unnamed 2>/dev/null)"
-report '  vulkan 0 discrete, Y, Z 1' 0
+report 'vulkan 0 discrete, Y, Z 1' 0
 says '# Y' 'None were run' 'Not measured: no time was left'
 result $? "steps that do not fit into the time are left out, and said"
-SLOW=floor,passes report '  vulkan 0 discrete, Y, Z 1' 20
+SLOW=floor,passes report 'vulkan 0 discrete, Y, Z 1' 20
 says '## Frame over trace floor' 'Not measured: it was stopped at its limit' '| SRIS #40'
 result $? "a step that is stuck takes its own share of the time"
 python3 - bench.json none.json <<'NONE'
@@ -126,12 +126,12 @@ bench = json.load(open(sys.argv[1]))
 bench["tables"]["floor"] = []
 json.dump(bench, open(sys.argv[2], "w"))
 NONE
-BENCH=$work/none.json report '  vulkan 0 discrete, Y, Z 1' 60
+BENCH=$work/none.json report 'vulkan 0 discrete, Y, Z 1' 60
 says '## Frame over trace floor' 'Not measured: no time.'; result $? "a table whose rows were all left out says why"
 # ended SIGNAL: a run that gets this signal while it measures cars
 ended() {
     rm -rf made asked
-    SLOW=cars-sized DEVICES='  vulkan 0 discrete, Y, Z 1' BUDGET=60 VK_DRIVER_FILES=none \
+    SLOW=cars-sized DEVICES='vulkan 0 discrete, Y, Z 1' BUDGET=60 VK_DRIVER_FILES=none \
         sh "$pack/gpu-report.sh" run "$work/made" >err 2>&1 &
     until grep -q cars-sized asked 2>/dev/null; do sleep 0.1; done
     kill -s "$1" $!
@@ -146,12 +146,12 @@ ended KILL
 says '| SRIS #40' '| restir-uniform, street'
 result $? "a run that is killed leaves the page of what it had"
 for name in 'NVIDIA RTX A6000' 'NVIDIA A40' 'NVIDIA L4' 'Tesla T4' 'AMD Radeon RX 7900 XTX'; do
-    report "  vulkan 0 discrete, $name, D 1" 0
+    report "vulkan 0 discrete, $name, D 1" 0
     ! grep -q 'no ray-tracing cores' "$page" || echo "$name" >>wrong
 done
 for name in 'NVIDIA A100-SXM4-40GB' 'NVIDIA H200' 'Tesla V100-SXM2-16GB' 'NVIDIA GeForce GTX 1080 Ti' \
     'AMD Instinct MI300X'; do
-    report "  vulkan 0 discrete, $name, D 1" 0
+    report "vulkan 0 discrete, $name, D 1" 0
     grep -q 'no ray-tracing cores' "$page" || echo "$name" >>wrong
 done
 test ! -e wrong; result $? "cards with and without ray-tracing cores, by name" "$(cat wrong 2>/dev/null)"

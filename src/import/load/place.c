@@ -50,14 +50,12 @@ static noc_status resolve(reading *r, const char *spelling, const char *place, g
             return NOC_OK;
         if (status == NOC_ERR_MEMORY)
             return noc_no_memory(r->log, place);
-        status = geo_crs_database();
+        const char *why_not;
+        status = geo_crs_database(&why_not);
         if (status == NOC_ERR_MEMORY)
             return noc_no_memory(r->log, place);
         if (status)
-            return noc_error(r->log, status,
-                             "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
-                             "is PROJ_DATA right?",
-                             place, spelling);
+            return noc_error(r->log, status, "%s: the CRS \"%.60s\" cannot be read: %s", place, spelling, why_not);
         if (!fallback && ++r->in->strange_crs > MOST_STRANGE)
             return noc_error(r->log, NOC_ERR_FORMAT,
                              "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them", place,

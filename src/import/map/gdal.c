@@ -1,35 +1,19 @@
 #include "import/map/gdal.h"
-#include "base/base.h"
 
 #if NOC_HAVE_GDAL
 
-#include <dlfcn.h>
+#include "base/base.h"
+
 #include <pthread.h>
-#include <stddef.h>
-#include <string.h>
 
 gdal_functions gdal;
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
-static char why_not[300];
+static char why_not[LIBRARY_WHY];
 
 static void load(void) {
-    static const struct {
-        const char *name;
-        size_t at;
-    } functions[] = {
-#define GDAL_FUNCTION(name) { #name, offsetof(gdal_functions, name) },
-        GDAL_FUNCTIONS(GDAL_FUNCTION)
-#undef GDAL_FUNCTION
-    };
-    void *library = dlopen(NOC_GDAL_LIBRARY, RTLD_NOW | RTLD_LOCAL), *found = library;
-    for (size_t i = 0; found && i < sizeof(functions) / sizeof(*functions); i++) {
-        found = dlsym(library, functions[i].name);
-        memcpy((char *)&gdal + functions[i].at, &found, sizeof(found));
-    }
-    const char *why = found ? NULL : dlerror();
-    if (!found)
-        noc_snprintf(why_not, sizeof(why_not), "%s", why ? why : NOC_GDAL_LIBRARY " lacks a function");
+    static const char *const names[] = { GDAL_FUNCTIONS(LIBRARY_NAME) };
+    library_load(NOC_GDAL_LIBRARY, names, NOC_COUNT(names), &gdal, why_not);
 }
 
 const char *gdal_load(void) {

@@ -1,11 +1,13 @@
 /* gdal: the functions of GDAL that are called. Its library, and the hundred that it needs, are loaded when a map or a
- * terrain is read, because most runs read neither and loading takes longer than all else that a start does. */
+ * terrain is read. */
 #ifndef NOC_IMPORT_MAP_GDAL_H
 #define NOC_IMPORT_MAP_GDAL_H
 
 #include "noc_config.h"
 
 #if NOC_HAVE_GDAL
+
+#include "base/library.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
@@ -37,11 +39,9 @@
     X(VSIFileFromMemBuffer) X(VSIFOpenL) X(VSIFReadL) X(VSIFree) X(VSIReadDir) X(VSIUnlink)
 /* clang-format on */
 
-#define GDAL_FUNCTION(name) __typeof__(name) *name;
 typedef struct gdal_functions {
-    GDAL_FUNCTIONS(GDAL_FUNCTION)
+    GDAL_FUNCTIONS(LIBRARY_POINTER)
 } gdal_functions;
-#undef GDAL_FUNCTION
 
 extern gdal_functions gdal;
 

@@ -68,10 +68,10 @@ static bool probe(const char *head, size_t size) {
 
 #if NOC_HAVE_ASSIMP
 
+#include "import/mesh/assimp.h"
+
 #include <assimp/ObjMaterial.h>
 #include <assimp/cfileio.h>
-#include <assimp/cimport.h>
-#include <assimp/material.h>
 #include <assimp/scene.h>
 
 /* ---- files as Assimp sees them: an OBJ of ours, MTLs from beside the one that is read ---- */
@@ -164,7 +164,7 @@ static void library_close(struct aiFileIO *io, struct aiFile *f) {
 
 static bool get_colour(const struct aiMaterial *m, const char *key, float rgb[3]) {
     struct aiColor4D c = { 0 };
-    if (aiGetMaterialColor(m, key, 0, 0, &c) != aiReturn_SUCCESS)
+    if (assimp.aiGetMaterialColor(m, key, 0, 0, &c) != aiReturn_SUCCESS)
         return false;
     rgb[0] = c.r;
     rgb[1] = c.g;
@@ -175,7 +175,7 @@ static bool get_colour(const struct aiMaterial *m, const char *key, float rgb[3]
 static bool get_float(const struct aiMaterial *m, const char *key, float *value) {
     ai_real x;
     unsigned one = 1;
-    if (aiGetMaterialFloatArray(m, key, 0, 0, &x, &one) != aiReturn_SUCCESS || !isfinite(x))
+    if (assimp.aiGetMaterialFloatArray(m, key, 0, 0, &x, &one) != aiReturn_SUCCESS || !isfinite(x))
         return false;
     *value = (float)x;
     return true;
@@ -199,7 +199,7 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
     get_colour(m, "$clr.emissive", out.emission);
     clamp_colour(out.albedo, 1, &changed);
     clamp_colour(out.emission, 1e12f, &changed);
-    if (aiGetMaterialIntegerArray(m, "$mat.illum", 0, 0, &illum, &one) != aiReturn_SUCCESS)
+    if (assimp.aiGetMaterialIntegerArray(m, "$mat.illum", 0, 0, &illum, &one) != aiReturn_SUCCESS)
         illum = -1;
     if (illum >= 2 && get_colour(m, "$clr.specular", ks) && get_float(m, "$mat.shininess", &ns)) {
         clamp_colour(ks, 1, &changed);
@@ -248,7 +248,7 @@ static noc_status add_meshes(const struct aiScene *from, const obj_text *text, c
     noc_status status = NOC_OK;
     for (unsigned i = from->mNumMaterials; i-- && memory;) { /* of one name the first */
         struct aiString name = { 0 };
-        aiGetMaterialString(from->mMaterials[i], "?mat.name", 0, 0, &name);
+        assimp.aiGetMaterialString(from->mMaterials[i], "?mat.name", 0, 0, &name);
         memory = map_put(&numbers, name.data, i, NULL);
         materials[2 * i] = materials[2 * i + 1] = -1;
     }
@@ -258,7 +258,7 @@ static noc_status add_meshes(const struct aiScene *from, const obj_text *text, c
         struct aiString name = { 0 };
         if (mesh->material)
             map_get(&numbers, mesh->material, &number);
-        aiGetMaterialString(from->mMaterials[number], "?mat.name", 0, 0, &name);
+        assimp.aiGetMaterialString(from->mMaterials[number], "?mat.name", 0, 0, &name);
         const obj_image *image =
             map_get(&to->images->of, name.data, &image_number) ? &to->images->list.data[image_number] : NULL;
         if (image && !mesh->placed) {
@@ -279,12 +279,12 @@ static noc_status add_meshes(const struct aiScene *from, const obj_text *text, c
 
 static noc_status read_obj(const char *path, library *lib, const obj_text *text, const obj_target *to) {
     struct aiFileIO io = { .OpenProc = library_open, .CloseProc = library_close, .UserData = (char *)lib };
-    const struct aiScene *from = aiImportFileEx(lib->main_name, 0, &io);
+    const struct aiScene *from = assimp.aiImportFileEx(lib->main_name, 0, &io);
     noc_status status;
     if (lib->refused) {
         status = noc_no_memory(to->parts->log, path);
     } else if (!from) {
-        const char *why = aiGetErrorString();
+        const char *why = assimp.aiGetErrorString();
         status = noc_error(to->parts->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
         if (lib->folder.missing) {
@@ -293,7 +293,7 @@ static noc_status read_obj(const char *path, library *lib, const obj_text *text,
         }
         status = add_meshes(from, text, to);
     }
-    aiReleaseImport(from);
+    assimp.aiReleaseImport(from);
     return status;
 }
 
@@ -351,6 +351,10 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
         status = noc_no_memory(parts->log, name);
     obj_chunks_free(&chunks);
     free(lib.data);
+    const char *why_not = !status && text.faces.len ? assimp_load() : NULL;
+    if (why_not)
+        status = noc_error(parts->log, NOC_ERR_UNSUPPORTED, "%s: OBJ needs Assimp, which cannot be loaded: %s", path,
+                           why_not);
     if (!status && text.faces.len) {
         status = read_obj(path, &lib, &text, &to);
         if (!status)
@@ -379,7 +383,8 @@ const noc_reader noc_reader_mesh = { .name = "OBJ",
                                      .probe = probe,
                                      .read_mesh = read_mesh,
                                      .read_parts = read_parts,
-                                     .foreign = foreign };
+                                     .foreign = foreign,
+                                     .load = assimp_load };
 
 #else
 

@@ -170,7 +170,7 @@ void confine_files(const char *path, const confine_needs *needs) {
         return;
     allow_system(&rules);
     allow_beside(&rules, dlopen(NOC_GDAL_LIBRARY, RTLD_LAZY | RTLD_NOLOAD), "GDALOpenEx");
-    allow_beside(&rules, RTLD_DEFAULT, "proj_create");
+    allow_beside(&rules, dlopen(NOC_PROJ_LIBRARY, RTLD_LAZY | RTLD_NOLOAD), "proj_create");
     if (needs->scratch)
         allow(&rules, scratch_place(), READ_FOLDERS | WRITE);
     if (needs->anywhere)
