@@ -95,9 +95,12 @@ typedef struct noc_import_params {
     noc_switch infer_lamps;
     bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
                     rule that infer_lamps does not ask for by ON; default false */
-    double lamp_height;       /* m, where not tagged; default 6 */
-    double lamp_lumens;       /* lm, where neither flux nor wattage is known; default 5000 */
-    double lamp_kelvin;       /* K, where not known; default 3000 */
+    double lamp_height; /* m, where not tagged; default 6 */
+    double lamp_lumens; /* lm, where neither flux nor wattage is known; default 5000 */
+    double lamp_kelvin; /* K, where not known; default 3000 */
+    /* Maintenance factor: what lamps of files, by rules and of builtin:city give of their flux, not windows and cars;
+     * 1, the default, as lamps are measured or sold */
+    double maintenance;
     bool profiles;            /* lamps have luminous intensity distributions, built-in ones by their kind; default true.
                                  false: Lambertian discs, spheres that shine alike to all sides */
     const char *lamp_profile; /* a luminaire's file (IES, EULUMDAT) of all lamps that no rule gives another; NULL, the
@@ -168,7 +171,7 @@ typedef struct noc_import_params {
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
         set(infer_lamps, NOC_SWITCH_AUTO) set(map_surfaces, NOC_SWITCH_AUTO) set(lamp_height, 6)                       \
-            set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(profiles, true) set(textures, true)                      \
+            set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(maintenance, 1) set(profiles, true) set(textures, true)  \
                 set(texture_memory, 512) set(windows, NOC_SWITCH_AUTO) set(traffic, NOC_SWITCH_AUTO)                   \
                     set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus

@@ -424,6 +424,7 @@ typedef struct noc_scene_info {
     double given_origin[3];
     int environment_width;  /* pixels of the map around it as given; 0: it has none */
     double environment_lux; /* what that lights an open horizontal surface with at scale 1, lx */
+    double maintenance;     /* noc_import_params.maintenance of its load: counted in the emission of its lamps */
     size_t memory_bytes;
 } noc_scene_info;
 

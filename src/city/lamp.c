@@ -509,6 +509,8 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     if (lamp->body_heads && (params->profiles || lamp->fitting))
         face_body(scene, lamp, p.facing);
     fitting f = choose_fitting(lamp, params);
+    for (int k = 0; k < 3; k++)
+        f.emission[k] *= (float)scene->maintenance;
     builder b = { .scene = scene,
                   .lamp = lamp,
                   .fitting = &f,

@@ -39,6 +39,7 @@ typedef struct influence_job {
 noc_status influence_tell_lamp(influence_job *job);
 
 /* influence_out.c */
+void influence_print_maintenance(const influence_job *job); /* a line, where it is not 1 */
 void influence_json_tags(const char *tags);
 noc_status influence_print(influence_job *job);       /* the table, or JSON */
 bool influence_csv_alone(const influence_args *args); /* in place of the table: --csv - */

@@ -79,6 +79,7 @@ static void print_lamp(const influence_job *job, const noc_reach *r, const noc_r
     if (lamp && isfinite(lamp->watts))
         printf(", %g W", lamp->watts);
     putchar('\n');
+    influence_print_maintenance(job);
     if (lamp && isfinite(lamp->height))
         printf("%-10s%.2f m\n", "height", lamp->height);
     print_text("profile", lamp ? lamp->profile : "");
@@ -130,6 +131,7 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
     json_place(job, "at", r->emitter.centre);
     json_value("lumens", r->emitter.lumens);
     json_value("kelvin", r->emitter.kelvin);
+    json_value("maintenance", job->info.maintenance);
     json_value("watts", lamp ? lamp->watts : NAN);
     json_value("height", lamp ? lamp->height : NAN);
     const char *const texts[][2] = { { "profile", lamp ? lamp->profile : "" },

@@ -114,8 +114,14 @@ static void print_kinds(const noc_influence_sum *s) {
         print_rest("sky", s->sky, s->sky_share);
 }
 
+void influence_print_maintenance(const influence_job *job) {
+    if (job->info.maintenance != 1)
+        printf("lamps give %g of their flux (--maintenance)\n", job->info.maintenance);
+}
+
 /* Lamps first, windows beside them, then the sum of what counts. */
-static void print_parts(const noc_influence_sum *s) {
+static void print_parts(const influence_job *job) {
+    const noc_influence_sum *s = &job->sum;
     static const char *const nouns[] = { "lamp", "window" };
     char a[64], b[64];
     for (int k = NOC_EMITTER_LAMP; k <= NOC_EMITTER_WINDOW; k++)
@@ -125,6 +131,7 @@ static void print_parts(const noc_influence_sum *s) {
     printf("%s lx ± %.2g by %s%s%s\n", cli_number(a, s->lux.value), s->lux.error,
            noc_text_many(b, s->emitters, "light"), s->sky.value > 0 ? " and the sky" : "",
            s->windows_counted ? "" : ", without windows");
+    influence_print_maintenance(job);
 }
 
 static noc_status print_table(influence_job *job) {
@@ -137,7 +144,7 @@ static noc_status print_table(influence_job *job) {
     noc_text_clean(region, sizeof(region), job->asked);
     printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
            *job->info.given_crs ? job->info.given_crs : "local metres");
-    print_parts(s);
+    print_parts(job);
     if (s->luminance.value > 0)
         printf("%s cd/m2 ± %.2g towards the camera of this, without what shines itself\n",
                cli_number(a, s->luminance.value), s->luminance.error);
@@ -249,6 +256,7 @@ static noc_status print_json(influence_job *job) {
     json_estimate("windows", s->kinds[NOC_EMITTER_WINDOW].lux);
     printf(", \"windows_counted\": %s,\n ", s->windows_counted ? "true" : "false");
     json_estimate("lux", s->lux);
+    json_number("maintenance", job->info.maintenance);
     printf(",\n ");
     json_estimate("sky", s->sky);
     printf(", ");

@@ -258,6 +258,7 @@ noc_status info_json_city(const info_city *city, const info_args *args) {
     number("lamps_inferred", (double)t->lamps_inferred);
     number("lamps_dropped", (double)t->lamps_dropped);
     number("lamps_repeated", (double)t->lamps_repeated);
+    number("maintenance", info->maintenance);
     rules(city->report);
     groups(city->report);
     number("tracks", (double)t->tracks);

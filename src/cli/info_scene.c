@@ -32,7 +32,7 @@ double info_sky(const info_args *args) {
     return render.sky;
 }
 
-static void print_lamps(const noc_report_totals *t) {
+static void print_lamps(const noc_report_totals *t, double maintenance) {
     char a[32];
     const struct {
         const char *what;
@@ -46,6 +46,8 @@ static void print_lamps(const noc_report_totals *t) {
             printf("%s%s %s", before, noc_text_count(a, rows[i].count), rows[i].what);
             before = ", ";
         }
+    if (maintenance != 1)
+        printf("; they give %g of their flux", maintenance);
     putchar('\n');
     if (*t->profiles)
         printf("  %-11s %s\n", "profiles", t->profiles);
@@ -80,7 +82,7 @@ void info_print_city(const info_city *city, const info_args *args) {
                noc_text_many(b, info->instance_triangles, "triangle"));
     cli_print_windows("  windows     ", &t->windows);
     cli_print_sky("  sky         ", info_sky(args));
-    print_lamps(t);
+    print_lamps(t, info->maintenance);
     if (t->tracks || t->cars)
         printf("  %-11s %s, %s of them along roads\n", "cars", noc_text_count(a, t->cars),
                noc_text_count(b, t->road_cars));

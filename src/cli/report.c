@@ -223,6 +223,7 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "camera-fov", cli_format("%.17g", c->fov_deg));
     add(&meta, "scene-triangles", cli_format("%zu", job->scene_info.triangles));
     add(&meta, "scene-lights", cli_format("%zu", job->scene_info.lights));
+    add(&meta, "lamps-maintenance", cli_format("%g", job->scene_info.maintenance));
     add_totals(&meta, job->report);
     add(&meta, "given-crs-name", cli_format("%s", job->scene_info.given_crs));
     add(&meta, "given-origin",
@@ -440,6 +441,8 @@ void cli_print_summary(const render_job *job) {
     if (!(args->render.environment_light && scene->environment_width))
         cli_print_sky("  sky       ", args->render.sky);
     print_lamps(job->report, &args->import);
+    if (scene->maintenance != 1)
+        printf("  upkeep    lamps give %g of their flux (--maintenance)\n", scene->maintenance);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],

@@ -74,6 +74,13 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
 
 double noc_light_weight(const noc_light_record *r) { return sqrt(noc_light_flux(r)); }
 
+/* What the maintenance factor has made of a light's flux; lights of cars have none. */
+static double maintenance_of(const noc_scene *s, const noc_light_record *r) {
+    uint32_t group = noc_light_group(r);
+    bool car = group && group <= s->groups.len && !strcmp(s->groups.data[group - 1].name, "cars");
+    return noc_light_is_lamp(r) && !car ? s->maintenance : 1;
+}
+
 /* A light as it was made: what is off or dimmed for now is looked at all the same, and windows as they are lit by
  * default. */
 static bool light_get(const noc_scene *s, uint32_t i, view_light *out) {
@@ -84,7 +91,7 @@ static bool light_get(const noc_scene *s, uint32_t i, view_light *out) {
     if (window && !window->removed)
         noc_window_first(window, r.e);
     noc_light_centre(&r, out->p);
-    out->weight = noc_light_weight(&r);
+    out->weight = noc_light_weight(&r) / sqrt(maintenance_of(s, &r));
     out->lamp = r.kind != NOC_LIGHT_TRIANGLE && r.kind != NOC_LIGHT_PARALLELOGRAM;
     return out->weight > 0;
 }

@@ -27,6 +27,7 @@ void noc_keep_scene(noct_writer *w, const noc_scene *s) {
     noct_put_u32(w, s->lit_elsewhere);
     noct_put_u32(w, s->scaled);
     noct_put_u32(w, s->wet);
+    noct_put_f64(w, s->maintenance);
     noct_put_text(w, s->crs_name);
     noct_put_text(w, s->given_crs_name);
     noct_put_text(w, s->without_crs);
@@ -69,9 +70,12 @@ noc_status noc_kept_scene(noct_file *f, noc_scene *s) {
     s->lit_elsewhere = noct_get_u32(&c) != 0;
     s->scaled = noct_get_u32(&c) != 0;
     s->wet = noct_get_u32(&c) != 0;
+    s->maintenance = noct_get_f64(&c);
     if (!get_text(f, &c, &s->crs_name) || !get_text(f, &c, &s->given_crs_name) || !get_text(f, &c, &s->without_crs) ||
         !noct_read_whole(f, &c, "scene"))
         return f->status;
+    if (!(s->maintenance > 0 && s->maintenance <= 1))
+        return noct_wrong(f, "its maintenance factor is not above 0 and at most 1");
     return ok && (bounds || empty) ? NOC_OK : noct_wrong(f, "the scene lies nowhere");
 }
 

@@ -84,6 +84,7 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
         info->instances += scene->instances.data[i].model > 0;
     info->cars = scene->cars.len;
     info->time = scene->time;
+    info->maintenance = scene->maintenance;
     info->given_crs = scene->given_crs_name ? scene->given_crs_name : info->crs;
     memcpy(info->given_origin, scene->given_crs_name ? scene->given_origin : scene->origin, sizeof(info->given_origin));
     memcpy(info->origin, scene->origin, sizeof(info->origin));

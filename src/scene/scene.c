@@ -12,8 +12,10 @@ static void forget_bounds(double lo[3], double hi[3]) {
 
 noc_scene *noc_scene_create_arrays(void) {
     noc_scene *scene = noc_calloc(1, sizeof(*scene));
-    if (scene)
+    if (scene) {
         forget_bounds(scene->bounds_min, scene->bounds_max);
+        scene->maintenance = 1;
+    }
     return scene;
 }
 

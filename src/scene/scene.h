@@ -287,6 +287,7 @@ struct noc_scene {
     noc_camera own_camera;                   /* fov_deg 0: none */
     bool scaled;                             /* a group's scale has been another than 1 */
     bool wet;                                /* its load has made roads and ground wet */
+    double maintenance;                      /* what its load gives lamps of their flux, 0 to 1 */
     uint32_t class_said;                     /* bits of classes that were set as a whole: */
     noc_material class_looks[NOC_CLASS_COUNT];
     bool committed;

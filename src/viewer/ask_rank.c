@@ -131,6 +131,12 @@ static bool goes_on(void *user, const char *what, double done) {
     return !ask_stopped(user);
 }
 
+static double maintenance(const asker *a) {
+    noc_scene_info info;
+    noc_scene_get_info(world_scene(a->world), &info);
+    return info.maintenance;
+}
+
 /* One answer of what is known by now. about: what is said of the place beside it; is not taken. */
 static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *about, double done) {
     noc_influence_row rows[ASK_ROWS];
@@ -146,6 +152,7 @@ static void tell(asker *a, const question *q, noc_ranking *ranking, json_t *abou
     set_estimate(m, "lamps", &sum.kinds[NOC_EMITTER_LAMP].lux);
     set_estimate(m, "windows", &sum.kinds[NOC_EMITTER_WINDOW].lux);
     set_estimate(m, "lux", &sum.lux);
+    json_object_set_new(m, "maintenance", ask_number(maintenance(a)));
     set_estimate(m, "luminance", &sum.luminance);
     json_object_set_new(m, "emitters", json_integer((json_int_t)sum.emitters));
     json_object_set_new(m, "kinds", kinds_of(&sum));

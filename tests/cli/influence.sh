@@ -103,6 +103,43 @@ run build builtin:city -o city.noct -q && run influence city.noct -q --region "s
     [ "$(grep -c '  lamp ' out)" -ge 1 ]
 result $? "a built city knows its streets"
 
+# Lamps give --maintenance of their flux, in files, by the rule and in builtin:city; windows give all of theirs.
+for factor in 1 0.8; do
+    ask --json --region "street:Well Lane" --maintenance $factor --time 0 && cp out kept$factor.json
+    run influence builtin:city -q --json --region "street:street 1" --error .005 --time 0 --maintenance $factor
+    cp out city$factor.json
+done
+cat >kept.py <<'PY'
+import json
+load = lambda name: json.load(open(name))
+a, b = load('kept1.json'), load('kept0.8.json')
+near = lambda x, y, within: abs(x - y) <= within * y
+assert a['maintenance'] == 1 and b['maintenance'] == .8, (a, b)
+assert near(b['lux'], .8 * a['lux'], 1e-5) and near(b['lamps'], .8 * a['lamps'], 1e-5), (a['lux'], b['lux'])
+assert [near(y['lumens'], .8 * x['lumens'], 1e-5) for x, y in zip(a['rows'], b['rows'])] == [True, True]
+a, b = load('city1.json'), load('city0.8.json')
+assert near(b['lamps'], .8 * a['lamps'], .02), (a['lamps'], b['lamps'])
+assert near(b['windows'], a['windows'], .06), (a['windows'], b['windows'])
+PY
+python3 kept.py
+result $? "a maintenance factor scales lamps alone"
+ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q '^lamps give 0.8 of their flux' out &&
+    head -n 1 kept.csv | grep -q ',maintenance$' && [ "$(grep -c ',0.8$' kept.csv)" = 7 ]
+result $? "and each answer says so"
+run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 && head -n 1 out >place1
+run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 --maintenance 0.3 &&
+    head -n 1 out | cmp -s - place1
+result $? "the camera does not move with it"
+for bad in 0 1.01 -1; do
+    expect "no maintenance factor of $bad" 2 'maintenance: .* is outside 0.01 to 1' \
+        influence map.osm --region point:0,0 --maintenance=$bad
+done
+run build builtin:city -o kept.noct -q --maintenance 0.8 && run influence kept.noct -q --json --region pixel:64,64 \
+    --time .1 && grep -q '"maintenance": 0.8' out && run info kept.noct --scene --json &&
+    grep -q '"maintenance": 0.8' out
+result $? "a built city keeps it"
+expect "which is decided there" 2 'built already' influence kept.noct --region pixel:64,64 --maintenance 0.9
+
 run influence map.osm --map-surfaces -q --lamp node/12 --top 2
 grep -q '^node/12: lamp$' out && grep -q '^flux  *9,000 lm of 1 light' out &&
     grep -q '^tags .*highway=street_lamp$' out &&

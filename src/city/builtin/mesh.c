@@ -164,6 +164,7 @@ void town_flush(town *t, const char *fmt, ...) {
 
 void town_light(town *t, const noc_light *light, int colour, double luminance) {
     noc_light l = *light;
+    luminance *= light->group == t->lamps ? t->scene->maintenance : 1;
     for (int k = 0; k < 3; k++)
         l.emission[k] = (float)(luminance * t->white[colour][k]);
     t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;

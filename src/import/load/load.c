@@ -503,6 +503,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = load_built(&im, built);
     else if (!status)
         status = luminaires_start(&im);
+    scene->maintenance = built || status ? scene->maintenance : params->maintenance;
     if (!status && !built)
         status = run(&im, readers);
     if (!status)

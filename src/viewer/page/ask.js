@@ -302,6 +302,7 @@ export class Ask {
                 ['lamps', this.#estimate(answer.lamps, answer.lamps_error, 'lx')],
                 ['windows', this.#estimate(answer.windows, answer.windows_error, 'lx')],
                 ['all light', this.#estimate(answer.lux, answer.lux_error, 'lx')],
+                ['maintenance', answer.maintenance < 1 && `lamps give ${answer.maintenance} of their flux`],
                 ['luminance', this.#estimate(answer.luminance, answer.luminance_error, 'cd/m²')],
             ]),
             this.#classes(answer.classes ?? []),
