@@ -154,9 +154,9 @@ def run(tests):
     if len(sys.argv) > 1:
         functions = [one for one in functions if one.__name__[5:] in sys.argv[1:]]
     with browser.Browser() as machine:
-        served = wire.Program(*CITY)
+        at = tests(machine, wire.Program(*CITY))
         try:
-            tap.run([Opened.test_opens, *functions, Opened.test_silent], tests(machine, served))
-        finally:
-            if served.alive():
-                served.end()
+            tap.run([Opened.test_opens, *functions, Opened.test_silent], at)
+        finally:  # which may be another one than it began with
+            if at.served.alive():
+                at.served.end()
