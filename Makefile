@@ -13,7 +13,7 @@ SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=fal
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
 	@echo "make build    build build/nocturne"
-	@echo "make check    build, and run all tests"
+	@echo "make check    build, and run the tests; FULL=1: all of them, with all samples, as CI does"
 	@echo "make gpu-report  tests and times of the Vulkan backend on this machine's GPU: docs/gpu/"
 	@echo "make asan     the tests again under AddressSanitizer and UBSan"
 	@echo "make tsan     those of them that run threads, under ThreadSanitizer"
@@ -54,7 +54,7 @@ built: deps-check build/build.ninja
 	@$(NINJA) -C build
 
 check: built
-	@tools/run-tests.sh build
+	@$(if $(FULL),,NOC_SUITE=quick )tools/run-tests.sh build $(if $(FULL),,--no-suite full)
 
 # Under nine minutes; DEVICE=NAME chooses one of several.
 gpu-report: built

@@ -2,8 +2,10 @@
 #ifndef NOC_TEST_H
 #define NOC_TEST_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -41,8 +43,22 @@
 #define SANITIZED 0
 #endif
 
-/* How many of `n` samples to take; a test that takes fewer does not judge their mean. */
-static inline int samples(int n) { return SANITIZED ? (n + 49) / 50 : n; }
+/* The quick suite takes an eighth of the samples, and judges by the same number of standard errors. */
+enum { QUICK_SHARE = 8 };
+static inline bool is_quick(void) {
+    const char *suite = getenv("NOC_SUITE");
+    return suite && !strcmp(suite, "quick");
+}
+
+/* How many of `n` samples to take where an eighth would miss what is rare; under sanitizers their mean is not judged.
+ */
+static inline int all_samples(int n) { return SANITIZED ? (n + 49) / 50 : n; }
+static inline int samples(int n) {
+    return SANITIZED || !is_quick() ? all_samples(n) : (n + QUICK_SHARE - 1) / QUICK_SHARE;
+}
+
+/* How far a mean may lie from what it should be, `e` for all samples, where samples() were taken. */
+static inline double slack(double e) { return is_quick() ? e * sqrt(QUICK_SHARE) : e; }
 
 /* Path of a file below shared/ (real data), or NULL where it is absent: then the test skips, saying so. */
 static inline const char *shared_path(const char *relative) {

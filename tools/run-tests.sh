@@ -1,9 +1,11 @@
 #!/bin/sh
-# run-tests.sh BUILD [MESON-TEST-OPTION...]: runs the suite; the last line is "N passed, N failed, N skipped".
+# run-tests.sh BUILD [MESON-TEST-OPTION...]: runs tests; the last line is "N passed, N failed, N skipped". One more than
+# there are processors, since some wait for a browser, or for what a program does after some seconds.
 set -u
 build=$1
 shift
 rm -f "$build/meson-logs/testlog.json"
+export MESON_TESTTHREADS="${MESON_TESTTHREADS:-$(($(nproc) + 1))}"
 meson test -C "$build" --no-rebuild --print-errorlogs "$@"
 status=$?
 [ -s "$build/meson-logs/testlog.json" ] || { echo "no tests were run" >&2; exit 1; }

@@ -40,9 +40,9 @@ static void pairwise_with_rays(void **state) {
         skip();
     }
     noc_scene *s = court();
-    result reference = measure_reference(s, true, NULL, 600);
+    result reference = measure_reference(s, true, NULL, samples(600));
     own_backend = NOC_BACKEND_VULKAN;
-    result x = measure_runs(s, &row, true, NULL, 200);
+    result x = measure_runs(s, &row, true, NULL, samples(200));
     own_backend = NOC_BACKEND_EMBREE;
     assert_true(agrees(row.name, &x, &reference));
     noc_scene_destroy(s);

@@ -87,7 +87,7 @@ static void refuse_each(const char *what, const import *in) {
     for (int later = 0; later < 2; later++) {
         reached = true;
         uint64_t dense = in->isolate || later ? 0 : in->all ? 300 : 40; /* the helper costs a process each time */
-        for (uint64_t n = 1; reached; n += n < dense ? 1 : 1 + n / (in->isolate ? 4 : 10)) {
+        for (uint64_t n = 1; reached; n += n < dense ? 1 : 1 + n / (in->isolate || is_quick() ? 4 : 10)) {
             status = run(in, n, later, &reached, &sum);
             if (status == NOC_OK)
                 assert_unharmed(sum == whole, what);

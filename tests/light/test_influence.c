@@ -249,7 +249,7 @@ static double distance(asked *a, int rounds) {
     for (int l = 0; l < BLOCK; l++)
         for (uint32_t i = 0; i < a->scene->lights.len && (LANES_ASKED >> l & 1); i++)
             want[l] += shine(a, i, l);
-    for (int r = 0; r < samples(rounds); r++) {
+    for (int r = 0; r < all_samples(rounds); r++) {
         draw(a);
         for (int l = 0; l < BLOCK; l++) {
             double x = 0;

@@ -120,7 +120,7 @@ static double distance(drawer *d, int rounds, int m, double wrong) {
     for (int l = 0; l < BLOCK; l++)
         for (uint32_t i = 0; i < d->scene->lights.len && (LANES_ASKED >> l & 1); i++)
             want[l] += shine(d->scene, d->y[l], i);
-    for (int r = 0; r < samples(rounds); r++) {
+    for (int r = 0; r < all_samples(rounds); r++) {
         draw(d, m);
         for (int l = 0; l < BLOCK; l++) {
             double x = 0;

@@ -230,10 +230,10 @@ static const config configs[] = {
 static void unbiased_while_edited(void **state) {
     (void)state;
     noc_scene *s = begin_street(0);
-    result reference = measure_reference(s, true, pose, 400);
+    result reference = measure_reference(s, true, pose, samples(400));
     int wrong = 0;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
-        result x = measure_runs(s, &configs[i], true, pose, 500);
+        result x = measure_runs(s, &configs[i], true, pose, samples(500));
         wrong += !agrees(configs[i].name, &x, &reference);
     }
     noc_scene_destroy(s);
@@ -252,7 +252,7 @@ static void edited_is_as_if_made_so(void **state) {
         noc_render_params p = params_of(&configs[3], 1);
         assert_int_equal(noc_view_render(look_on, &cam, &p, NULL), NOC_OK); /* its world is that of frame 0 */
         pose(edited, frame);
-        result a = measure_reference(want, false, NULL, 300);
+        result a = measure_reference(want, false, NULL, samples(300));
         config c = { .method = NOC_METHOD_REFERENCE };
         p = params_of(&c, 5);
         p.rays = 32;

@@ -93,7 +93,8 @@ static void windows_stand_beside(void **state) {
         noc_influence_sum sum;
         noc_influence_class c;
         size_t found;
-        assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .rays = (uint64_t)samples(200000) }, NULL), 0);
+        assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .rays = (uint64_t)all_samples(200000) }, NULL),
+                         0);
         assert_int_equal(noc_ranking_get(r, rows, 2, &found, &sum), NOC_OK);
         const noc_influence_kind *by_lamp = &sum.kinds[NOC_EMITTER_LAMP], *by_window = &sum.kinds[NOC_EMITTER_WINDOW];
         double all = lamp + counted * window, near = SANITIZED ? .05 : 2e-3;
@@ -154,7 +155,7 @@ static void errors_of_classes_cover(void **state) {
     print_message("# %d %% of a small class, %d %% of totals within 1.96 standard errors\n", 100 * inside[0] / of,
                   100 * inside[1] / of);
     for (int i = 0; i < 2; i++)
-        assert_true(SANITIZED || (inside[i] > 0.9 * of && inside[i] < of));
+        assert_true(SANITIZED || (inside[i] > (0.95 - slack(0.05)) * of && (inside[i] < of || is_quick())));
     noc_region_destroy(region);
     noc_region_destroy(small);
     close_view(view);

@@ -86,10 +86,10 @@ static const config configs[] = {
 static void unbiased_on_the_move(void **state) {
     (void)state;
     noc_scene *s = crossing(0);
-    result reference = measure_reference(s, true, pose, 500);
+    result reference = measure_reference(s, true, pose, samples(500));
     int wrong = 0;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
-        result x = measure_runs(s, &configs[i], true, pose, 700);
+        result x = measure_runs(s, &configs[i], true, pose, samples(700));
         wrong += !agrees(configs[i].name, &x, &reference);
     }
     noc_scene_destroy(s);

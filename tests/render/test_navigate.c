@@ -302,7 +302,7 @@ static void a_walker_is_never_in_a_wall_nor_under_the_ground(void **state) {
     }
     print_message("# walked %.0f m, up to %.0f m away\n", way, far);
     if (!SANITIZED)
-        assert_true(way > 150 && far > 30);
+        assert_true(way > samples(150) && (far > 30 || is_quick()));
     leave(&p);
 }
 

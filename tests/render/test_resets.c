@@ -298,7 +298,7 @@ static void idle_options_and_aovs_reset_nothing(void **state) {
 static void what_is_kept_is_unbiased(void **state) {
     (void)state;
     noc_scene *s = yard();
-    result reference = measure_reference(s, false, NULL, 300);
+    result reference = measure_reference(s, false, NULL, samples(300));
     const config lists = { .method = NOC_METHOD_RESTIR,
                            .temporal = true,
                            .bias = NOC_BIAS_PAIRWISE,

@@ -119,7 +119,7 @@ static inline result measure_runs(noc_scene *s, const config *c, bool moving, po
     result out = { 0 };
     noc_view *r = own_view(s, 2, NULL);
     assert_non_null(r);
-    for (int run = 0; run < samples(runs); run++) {
+    for (int run = 0; run < runs; run++) {
         noc_render_params p = params_of(c, (uint32_t)run * 7919 + 17);
         noc_view_reset(r);
         for (int f = 1, at = 0; f <= FRAMES; f++) {
@@ -155,7 +155,7 @@ static inline result measure_reference_of(noc_scene *s, bool moving, pose_fn pos
         noc_camera cam = camera_at(check_at[at], moving);
         if (pose)
             pose(s, check_at[at]);
-        for (int f = 0; f < samples(frames); f++) {
+        for (int f = 0; f < frames; f++) {
             assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
             (lux ? add_illuminance : add_picture)(&out.at[at], r);
         }

@@ -176,6 +176,7 @@ def test_there_are_so_many_clients(p):
     check_alive(p)
 
 
+@tap.slow
 def test_idle_clients_keep_nobody_out(p):
     """They answer pings, say that they do, and nothing else. Who is at work keeps its place."""
     q = Program(SCENE, "--clients", "3")
@@ -388,6 +389,7 @@ def test_rates_are_held(p):
     check_alive(p)
 
 
+@tap.slow
 def test_who_does_not_read_holds_no_memory(p):
     """It is sent one picture, and then none; and is dropped after a while."""
     c = joined(p, receive=4096)
@@ -413,6 +415,7 @@ def test_who_does_not_read_holds_no_memory(p):
     check_alive(p)
 
 
+@tap.slow
 def test_nothing_is_rendered_for_nobody(p):
     """Hidden, or not acknowledged, or at rest: no processor time."""
     time.sleep(1)

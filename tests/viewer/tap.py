@@ -1,4 +1,5 @@
 """Tests as functions whose names begin with test_, in their order; a line of TAP each."""
+import os
 import sys
 import time
 import traceback
@@ -21,5 +22,13 @@ def run(functions, *values):
     sys.exit(failed > 0)
 
 
+def slow(function):
+    """A test that the quick suite leaves out: it waits for what takes the program some ten seconds."""
+    function.slow = True
+    return function
+
+
 def tests_of(module):
-    return [value for name, value in vars(module).items() if name.startswith("test_")]
+    quick = os.environ.get("NOC_SUITE") == "quick"
+    return [value for name, value in vars(module).items()
+            if name.startswith("test_") and not (quick and getattr(value, "slow", False))]
