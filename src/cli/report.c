@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 
 typedef struct meta_text {
-    char *keys[160], *values[160];
+    char *keys[192], *values[192];
     size_t count;
 } meta_text;
 
