@@ -140,6 +140,8 @@ typedef struct noc_import_params {
                              three quarters of the machine's */
     double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
                              200 */
+    double max_instances; /* points that instances of templates (CityGML, CityJSON) may place, a byte of its stored
+                             size, where they are over 10 million; 0: any; default 5 */
     /* an equirectangular picture (EXR, Radiance HDR) for noc_scene_set_environment; NULL, the default: none */
     const char *environment;
     bool textures; /* surfaces look as city models say: images and colours of their appearances; default true */
@@ -173,7 +175,7 @@ typedef struct noc_import_params {
         set(infer_lamps, NOC_SWITCH_AUTO) set(map_surfaces, NOC_SWITCH_AUTO) set(lamp_height, 6)                       \
             set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(maintenance, 1) set(profiles, true) set(textures, true)  \
                 set(texture_memory, 512) set(windows, NOC_SWITCH_AUTO) set(traffic, NOC_SWITCH_AUTO)                   \
-                    set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+                    set(isolate, true) set(reader_time, 600) set(max_expansion, 200) set(max_instances, 5)
 #ifdef __cplusplus
 #define NOC_IMPORT_ALL_DEFAULTS(set)                                                                                   \
     set(window, noc_window_default_params()) set(cars, noc_traffic_default_params()) NOC_IMPORT_DEFAULTS(set)

@@ -14,6 +14,7 @@ typedef struct import_budget {
     double memory;    /* bytes */
     double expansion; /* times `stored`; 0: any */
     double stored;    /* bytes of the input and the files it names */
+    double instances; /* points that instances of templates may place, a byte of `stored`; 0: any */
     /* Told of bytes that are much before they are taken, where several inputs are read at once; may wait. NULL: none.
      */
     void (*claim)(void *claimant, double bytes);
@@ -24,7 +25,9 @@ import_budget import_budget_of(const noc_import_params *params);
 size_t import_threads(const noc_import_params *params, size_t items);
 /* NOC_ERR_MEMORY after reporting where `what` of the input would take more bytes than it may. */
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log);
-/* The same question without a word. */
+/* NOC_ERR_MEMORY after reporting where instances of templates would place more points than they may. */
+noc_status import_affords_instances(const import_budget *b, double points, const char *name, noc_log *log);
+/* As import_affords, without a word. */
 bool import_fits(const import_budget *b, double bytes);
 /* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
 double import_json_cost(const char *text, size_t size);

@@ -188,9 +188,10 @@ static const noc_option import_options[] = {
     REAL(P, cars.body_length, "car-length", "Traffic", 0, 30, "m", "that it is scaled to; 0 = as its file says"),
     BOOL(P, isolate, "isolate", "Reading", "OBJ and map files are read in a process of its own, which can be stopped"),
     REAL(P, reader_time, "reader-time", "Reading", 0.1, 1e6, "s", "time such a file may take"),
-    REAL(P, max_memory, "max-memory", "Reading", 0, 1e6, "GB", "memory that reading an input may take; 0 = 3/4 of all"),
+    REAL(P, max_memory, "max-memory", "Reading", 0, 1e6, "GB", "memory to read an input; 0 = 3/4 of all"),
     REAL(P, max_expansion, "max-expansion", "Reading", 0, 1e9, "", "times its size that an input may grow; 0 = any"),
-    BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie outside the inputs' folders"),
+    REAL(P, max_instances, "max-instances", "Reading", 0, 1e9, "", "points a byte that instances may place; 0 = any"),
+    BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie anywhere"),
     END,
 };
 /* clang-format on */

@@ -174,6 +174,35 @@ static void gltf_is_added_up_first(void **state) {
     assert_non_null(strstr(errors, "--max-expansion is 200 times"));
 }
 
+/* 101 instances of a template of 100,000 points: a file of .2 MB. */
+static void instances_are_bounded(void **state) {
+    enum { POINTS = 100000, INSTANCES = 101 };
+    FILE *f = create("instances.json");
+    fputs("{\"type\":\"CityJSON\",\"version\":\"1.1\",\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},"
+          "\"vertices\":[[0,0,0]],\"geometry-templates\":{\"vertices-templates\":[[0,0,0]],\"templates\":[{\"type\":"
+          "\"MultiSurface\",\"lod\":\"1\",\"boundaries\":[[[0",
+          f);
+    for (int i = 1; i < POINTS; i++)
+        fputs(",0", f);
+    fputs("]]]}]},\"CityObjects\":{", f);
+    for (int i = 0; i < INSTANCES; i++)
+        fprintf(f,
+                "%s\"o%d\":{\"type\":\"CityFurniture\",\"geometry\":[{\"type\":\"GeometryInstance\",\"template\":0,"
+                "\"boundaries\":[0]}]}",
+                i ? "," : "", i);
+    fputs("}}", f);
+    fclose(f);
+    refused("instances.json", 0, "instances of its templates would place over 10 million points, of a file of 0.2");
+    assert_non_null(strstr(errors, "the limit --max-instances is 5 a byte"));
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message });
+    noc_import_params params = noc_import_default_params();
+    params.max_instances = 60; /* points a byte: 12 million */
+    noc_report *report;
+    assert_int_equal(noc_inspect(log, path_of("instances.json"), &params, &report), NOC_OK);
+    noc_report_destroy(report);
+    noc_log_destroy(log);
+}
+
 /* gzip that grows to 1.2 GB is refused once it looks strange, and not after a gigabyte of it. */
 static void archives_are_measured(void **state) {
     enum { PIECE = 8 << 20, TIMES = 150 };
@@ -405,6 +434,7 @@ int main(void) {
         cmocka_unit_test(json_is_bounded),
         cmocka_unit_test(gltf_copies_are_bounded),
         cmocka_unit_test(gltf_is_added_up_first),
+        cmocka_unit_test(instances_are_bounded),
         cmocka_unit_test(archives_are_measured),
         cmocka_unit_test(lamps_are_bounded),
         cmocka_unit_test(cities_are_bounded),

@@ -352,6 +352,7 @@ typedef struct cg_parser {
     NOC_ARRAY(float) out_uv;
     bool object_open;               /* begin_object was called and end_object not yet */
     size_t emitted, dropped, twins; /* polygons: used; there already; of these with the shape of another one */
+    double instanced;               /* points that instances of templates have placed */
     size_t looked;                  /* features and surfaces looked at for installed lamps, since progress was asked */
 } cg_parser;
 

@@ -61,10 +61,22 @@ void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *poi
     point[2] = anchor[2] + local[2];
 }
 
+/* Counts the points of an instance, of which a few bytes can place millions. */
+static void count_instance(cg_parser *p, const cg_polygon *polygon) {
+    for (uint32_t r = 0; r < polygon->ring_count; r++)
+        p->instanced += (double)polygon->ring_size[r];
+    cg_stop(p, import_affords_instances(noc_stream_budget(p->stream), p->instanced, noc_stream_name(p->stream),
+                                        p->sink->log));
+}
+
 /* Into p->out, p->out_rings: easting northing height, turned over where asked. p->status tells where memory is refused.
  */
 void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
     p->out.len = p->out_rings.len = p->out_uv.len = 0;
+    if (implicit)
+        count_instance(p, polygon);
+    if (p->status)
+        return;
     const double *in = polygon->xyz;
     const float *uv = polygon->uv;
     for (uint32_t r = 0; r < polygon->ring_count; r++) {
