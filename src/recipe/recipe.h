@@ -37,6 +37,7 @@ typedef struct recipe_file {
     noc_log *log;
     bool built; /* a built city's, which is its input */
     yaml_document_t yaml;
+    size_t read; /* bytes of nodes, those that aliases repeat each time */
     noc_recipe *recipe;
     noc_log *listener; /* of calls whose errors are told with their line: the last one is in `told` */
     char told[400];

@@ -8,9 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define MOST_BYTES (1u << 20) /* of a recipe */
-#define MOST_DEPTH 32         /* of lists in lists: libyaml's time grows with its square */
-#define MOST_TEXTS 100000     /* of a list */
+#define MOST_BYTES (1u << 20)      /* of a recipe */
+#define MOST_READ (4 * MOST_BYTES) /* with what aliases repeat */
+#define MOST_DEPTH 32              /* of lists in lists: libyaml's time grows with its square */
+#define MOST_TEXTS 100000          /* of a list */
 
 noc_status recipe_wrong(const recipe_file *f, const yaml_node_t *node, const char *fmt, ...) {
     char text[400];
@@ -141,7 +142,18 @@ noc_status recipe_open(recipe_file *f) {
     return status;
 }
 
-yaml_node_t *recipe_node(recipe_file *f, int index) { return yaml_document_get_node(&f->yaml, index); }
+yaml_node_t *recipe_node(recipe_file *f, int index) {
+    yaml_node_t *node = yaml_document_get_node(&f->yaml, index);
+    f->read += 1 + (node && node->type == YAML_SCALAR_NODE ? node->data.scalar.length : 0);
+    return node;
+}
+
+/* An anchor may be repeated any number of times, and a few bytes each. */
+static noc_status check_read(const recipe_file *f, const yaml_node_t *node) {
+    return f->read <= MOST_READ
+               ? NOC_OK
+               : recipe_wrong(f, node, "its aliases (*) repeat more than %u bytes, which no recipe does", MOST_READ);
+}
 
 const char *recipe_text(const yaml_node_t *node) {
     if (!node || node->type != YAML_SCALAR_NODE || !node->data.scalar.length)
@@ -160,6 +172,9 @@ noc_status recipe_each(recipe_file *f, yaml_node_t *map, const char *what,
         const yaml_node_t *key = recipe_node(f, p->key);
         const char *text = recipe_text(key);
         bool fresh = true;
+        status = check_read(f, key);
+        if (status)
+            break;
         if (!text)
             status = recipe_wrong(f, key ? key : map, "a key of %s is no text", what);
         else if (!map_put(&keys, text, 0, &fresh))
@@ -182,6 +197,9 @@ noc_status recipe_texts(recipe_file *f, yaml_node_t *node, const char *key, cons
     for (size_t i = 0; i < n && *texts; i++) {
         const yaml_node_t *item = list ? recipe_node(f, node->data.sequence.items.start[i]) : node;
         const char *text = recipe_text(item);
+        noc_status status = check_read(f, item);
+        if (status)
+            return status;
         if (!text)
             return recipe_wrong(f, item ? item : node, list ? "%s: entry %zu is no text" : "%s has no value", key,
                                 i + 1);

@@ -436,6 +436,26 @@ static void test_a_bomb_is_an_error_at_once(void **state) {
     free(deep);
 }
 
+/* 2,000 tests that groups repeat by an alias: 4 groups may, 400 may not. */
+static void test_aliases_are_counted(void **state) {
+    (void)state;
+    enum { ROOM = 200000, TESTS = 2000 };
+    noc_recipe *r;
+    char *text = malloc(ROOM);
+    for (int groups = 4; groups <= 400; groups += 396) {
+        size_t n = (size_t)snprintf(text, ROOM, "nocturne: 1\ninputs: [x]\ngroups:\n  g0: { match: &m { k: x");
+        for (int i = 1; i < TESTS; i++)
+            n += (size_t)snprintf(text + n, ROOM - n, ", k%d: x", i);
+        n += (size_t)snprintf(text + n, ROOM - n, " } }\n");
+        for (int i = 1; i < groups; i++)
+            n += (size_t)snprintf(text + n, ROOM - n, "  g%d: { match: *m }\n", i);
+        assert_int_equal(load(text, &r), groups == 4 ? NOC_OK : NOC_ERR_FORMAT);
+        assert_int_equal(strstr(last_error, "its aliases (*) repeat more than 4194304 bytes") != NULL, groups == 400);
+        noc_recipe_destroy(r);
+    }
+    free(text);
+}
+
 static void test_memory_refused(void **state) {
     (void)state;
     noc_log *log = counting_log();
@@ -521,6 +541,7 @@ int main(void) {
         cmocka_unit_test(test_files_that_cannot_be_read),
         cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
         cmocka_unit_test(test_a_bomb_is_an_error_at_once),
+        cmocka_unit_test(test_aliases_are_counted),
         cmocka_unit_test(test_memory_refused),
         cmocka_unit_test(test_writing_refused),
     };
