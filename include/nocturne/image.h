@@ -40,16 +40,21 @@ typedef struct noc_display_params {
     double ev100;
     double compensation; /* stops added to the automatic exposure, positive is brighter; default 0 */
     noc_tonemap tonemap;
-    double white_kelvin; /* K, held to 2500..15000; a black body of it is shown as the screen's white; default 6500,
-                          * and so is 0 */
+    double white_kelvin; /* K, held to 2500..15000; a black body of it is shown as the screen's white; default 3700;
+                          * 0 is the screen's own, 6500 */
 } noc_display_params;
 
-#define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC) set(white_kelvin, 6500)
+#define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC) set(white_kelvin, 3700)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_DEFAULTS)
 #else
 #define noc_display_default_params() ((noc_display_params){ NOC_DISPLAY_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
+
+/* Fills *ev100 from a number of -30 to 30, or from a camera's settings: "f/2.8,1/30,iso1600" is log2(N^2 / t) - log2(S
+ * / 100), N the f-number, t the exposure time [s], S the sensitivity. Returns NULL, or what is wrong with the text: "is
+ * neither ...". */
+NOC_API const char *noc_exposure_read(const char *text, double *ev100);
 
 /* The automatic exposure of a picture, as EV100. NaN when memory is refused (256 KiB). */
 NOC_API double noc_image_auto_ev100(const noc_image *image);

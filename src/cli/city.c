@@ -17,7 +17,7 @@ const noc_option *cli_camera_options(void) {
 const noc_option *cli_exposure_options(void) {
     static const noc_option rows[] = {
         TEXT("exposure", "Display", exposure, "EV",
-             "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
+             "\"auto\" (noise moves it), EV100 (one more is half as bright), or f/2.8,1/30,iso1600"),
         { NULL },
     };
     return rows;

@@ -98,9 +98,8 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
     if (!strcmp(text, "auto"))
         return CLI_OK;
     display->auto_exposure = false;
-    if (!noc_text_numbers(text, 0, 1, &display->ev100) || display->ev100 < -30 || display->ev100 > 30)
-        return cli_usage(command, "--exposure: \"%.60s\" is neither auto nor an EV100 of -30 to 30", text);
-    return CLI_OK;
+    const char *wrong = noc_exposure_read(text, &display->ev100);
+    return wrong ? cli_usage(command, "--exposure: \"%.60s\" %s nor auto", text, wrong) : CLI_OK;
 }
 
 /* What was given and changes nothing is no error, but hardly what was meant. */

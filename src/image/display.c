@@ -216,6 +216,8 @@ static void display_covered(const display_map *d, const noc_image *image, size_t
 noc_status noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
     if (!image || !out)
         return NOC_ERR_ARGUMENT;
+    const noc_display_params defaults = noc_display_default_params();
+    params = params ? params : &defaults;
     display_map d;
     double ev100;
     if (!display_ev100(image, params, &ev100))

@@ -61,7 +61,7 @@ typedef struct display_map {
     double scale[3]; /* multiplies cd/m2: exposure and white balance */
     srgb8_table srgb;
 } display_map;
-/* ev100 is the exposure in effect (display_ev100); params NULL: defaults. */
+/* ev100 is the exposure in effect (display_ev100); params NULL: filmic, without white balance. */
 void display_init(display_map *d, const noc_display_params *params, double ev100);
 /* params NULL: defaults. False: memory was refused. */
 bool display_ev100(const noc_image *image, const noc_display_params *params, double *ev100) NOC_MUST_USE;

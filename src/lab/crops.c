@@ -26,6 +26,7 @@ static uint8_t *display(const noc_image *image, double ev100, bool light, noc_lo
     if (light) { /* as it was written: white is 1 */
         params.tonemap = NOC_TONEMAP_LINEAR;
         params.ev100 = -log2(1.2);
+        params.white_kelvin = 0;
     }
     uint8_t *rgb = noc_alloc((size_t)image->width * (size_t)image->height * 3);
     if (rgb && !noc_image_to_srgb8(image, &params, rgb))

@@ -114,7 +114,8 @@ static const noc_option render_options[] = {
 /* clang-format off */
 static const noc_option display_options[] = {
     BOOL(P, auto_exposure, "auto-exposure", "Display", "measure the picture; off: ev100 decides"),
-    REAL(P, ev100, "ev100", "Display", -30, 30, "EV", "exposure when auto-exposure is off"),
+    REAL(P, ev100, "ev100", "Display", -30, 30, "EV", "exposure when auto-exposure is off, or f/2.8,1/30,iso1600",
+         .read = noc_exposure_read),
     REAL(P, compensation, "compensation", "Display", -20, 20, "stops",
          "added to the automatic exposure; more is brighter", "auto-exposure=true"),
     CHOICE(P, tonemap, "tonemap", "Display", "filmic|reinhard|linear", "curve from luminance to the screen"),

@@ -32,7 +32,7 @@ static const struct {
     [EXTRA_ISOLINES] = { "isolines", "Mode", "text", "LIST",
                          "lines at values, 5,7.5,10 (one: 5,), or N of them at round ones; 0 = none" },
     [EXTRA_EXPOSURE] = { "exposure", "Display", "text", "EV",
-                         "auto, or EV100 of -30 to 30: one more is half as bright" },
+                         "auto, EV100 of -30 to 30 (one more is half as bright), or f/2.8,1/30,iso1600" },
 };
 
 typedef struct table {
@@ -148,6 +148,7 @@ static bool set_show(look *l, const char *value, char *why, size_t size) {
 
 static bool set_extra(look *l, extra which, const char *value, char *why, size_t size) {
     double ends[2] = { 0, 0 }, ev100;
+    const char *wrong;
     bool automatic = !strcmp(value, "auto");
     switch (which) {
     case EXTRA_SHOW: return set_show(l, value, why, size);
@@ -155,8 +156,9 @@ static bool set_extra(look *l, extra which, const char *value, char *why, size_t
         l->display.auto_exposure = automatic;
         if (automatic)
             return true;
-        if (!noc_text_numbers(value, 0, 1, &ev100) || !(ev100 >= -30 && ev100 <= 30))
-            return viewer_wrong(why, size, "exposure: \"%.60s\" is neither auto nor an EV100 of -30 to 30", value);
+        wrong = noc_exposure_read(value, &ev100);
+        if (wrong)
+            return viewer_wrong(why, size, "exposure: \"%.60s\" %s nor auto", value, wrong);
         l->display.ev100 = ev100;
         return true;
     case EXTRA_ISOLINES:

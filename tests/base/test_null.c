@@ -322,6 +322,7 @@ static noc_camera camera;
     P(0, noc_region_find(view, scene, NULL, NULL, NULL) == NULL)                                                       \
     P(0, noc_ranking_create(NULL, NULL, NULL) == NULL)                                                                 \
     P(0, noc_sky_read(NULL, NULL) != NULL)                                                                             \
+    P(0, noc_exposure_read(NULL, NULL) != NULL)                                                                        \
     P(0, noc_ranking_create(view, NULL, NULL) == NULL)                                                                 \
     P(0, noc_scene_get_emitter(NULL, 0, &(noc_emitter){ 0 }) == NOC_ERR_ARGUMENT)                                      \
     P(0, noc_scene_get_emitter(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                    \

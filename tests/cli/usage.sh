@@ -86,7 +86,7 @@ for v in 1 1,1 2,1 -1,1 a,b 1,2,3 nan,1 0,inf; do
     expect "a bar of $v" 2 '--show-range: ".*" is not LOW,HIGH' render $c -o a.png --show lights --show-range=$v
 done
 expect "field of view of 0" 2 'fov: "0" is outside 1 to 170 degrees' render $c -o a.png --fov 0
-for e in bright 31 -31 1,2 ''; do
+for e in bright 31 -31 1,2 f/2,1/30 f/0,1,iso100 ''; do
     expect "exposure '$e'" 2 'exposure: ' render $c -o a.png "--exposure=$e"
 done
 expect "10 000 characters as an option" 2 'no option --xxx.*\.\.\.' render $c "--$long"

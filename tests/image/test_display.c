@@ -73,6 +73,7 @@ static void curves_rise_within_range(void **state) {
 static noc_display_params tonemapped(noc_tonemap tonemap) {
     noc_display_params p = noc_display_default_params();
     p.tonemap = tonemap;
+    p.white_kelvin = 0;
     return p;
 }
 
@@ -179,6 +180,59 @@ static void white_is_balanced(void **state) {
         for (int k = 0; k < 2; k++)
             display_init(&d[k], &(noc_display_params){ .white_kelvin = beyond[i][k] }, 0.5);
         assert_memory_equal(d[0].scale, d[1].scale, sizeof(d[0].scale));
+    }
+}
+
+/* By default a street under LED lamps of 4000 K is nearly neutral, one of 3000 K is warm, and sodium is orange: codes
+ * of a grey surface at code 188 of white. Without white balance it is 3000 K that is orange. */
+static void nights_are_balanced(void **state) {
+    (void)state;
+    static const struct {
+        double white, kelvin;
+        int least, most; /* of red over blue, in codes */
+    } seen[] = {
+        { -1, 4000, -25, 0 }, { -1, 3700, -1, 1 }, { -1, 3000, 30, 60 }, { -1, 2000, 150, 220 }, { 0, 3000, 110, 160 }
+    };
+    for (size_t i = 0; i < NOC_COUNT(seen); i++) {
+        noc_display_params p = noc_display_default_params();
+        float lamp[3];
+        uint8_t out[3];
+        display_map d;
+        p.tonemap = NOC_TONEMAP_LINEAR;
+        p.white_kelvin = seen[i].white < 0 ? p.white_kelvin : seen[i].white;
+        noc_kelvin_rgb(seen[i].kelvin, lamp);
+        display_init(&d, &p, 0.737); /* 1.2 * 2^0.737 is 2 */
+        display_pixel(&d, lamp, out);
+        if (out[0] - out[2] < seen[i].least || out[0] - out[2] > seen[i].most)
+            fail_msg("%g K: %d %d %d", seen[i].kelvin, out[0], out[1], out[2]);
+    }
+}
+
+/* EV100 = log2(N^2 / t) - log2(S / 100). */
+static void cameras_say_their_exposure(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double ev100;
+    } good[] = { { "f/1,1,iso100", 0 },
+                 { "f/2,1/4,iso100", 4 },
+                 { "f/4,1/15,100", 7.906891 },
+                 { "2.8,1/30,iso1600", 3.877744 },
+                 { "f/8,0.5,iso400", 5 },
+                 { "4.18", 4.18 },
+                 { "-3", -3 } };
+    static const char *const bad[] = { "f/2.8,1/30",     "f/0,1/30,iso100",  "f/2,1/0,iso100", "f/2,-1,iso100", "31",
+                                       "f/2,1/4,iso0",   "f/2,1/4,iso100,1", "f/2,1/4,isox",   "1,2",           "",
+                                       "f/nan,1,iso100", "f/1e9,1,iso100" };
+    for (size_t i = 0; i < NOC_COUNT(good); i++) {
+        double ev = NAN;
+        assert_null(noc_exposure_read(good[i].text, &ev));
+        assert_true(fabs(ev - good[i].ev100) < 1e-6);
+    }
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        double ev = 1;
+        assert_non_null(noc_exposure_read(bad[i], &ev));
+        assert_true(ev == 1);
     }
 }
 
@@ -387,6 +441,8 @@ int main(void) {
         cmocka_unit_test(warm_stays_warm),
         cmocka_unit_test(pure_stays_pure),
         cmocka_unit_test(white_is_balanced),
+        cmocka_unit_test(nights_are_balanced),
+        cmocka_unit_test(cameras_say_their_exposure),
         cmocka_unit_test(linear_is_exact),
         cmocka_unit_test(exposure_scales_with_the_light),
         cmocka_unit_test(exposure_meters_what_is_lit),

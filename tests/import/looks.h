@@ -42,6 +42,7 @@ static inline void write_image(const char *name) {
     linear.auto_exposure = false;
     linear.tonemap = NOC_TONEMAP_LINEAR;
     linear.ev100 = 0;
+    linear.white_kelvin = 0;
     assert_int_equal(noc_image_write(image, in_folder(name), &linear, NULL, NULL), NOC_OK);
     noc_image_destroy(image);
 }

@@ -89,7 +89,7 @@ static void what_is_wrong_is_told(void **state) {
         { "isolines", "5,3", "isolines: \"5,3\" is neither rising values, 1,2,5, nor a number of lines, 0 to 32" },
         { "isolines", "", "isolines" },
         { "isolines", "33", "isolines" },
-        { "exposure", "bright", "exposure: \"bright\" is neither auto nor an EV100 of -30 to 30" },
+        { "exposure", "bright", "exposure: \"bright\" is neither EV100 of -30 to 30 nor f/2.8,1/30,iso1600 nor auto" },
         { "exposure", "31", "exposure" },
         { "frames", "-1", "frames: \"-1\" is outside 0 to 1000000" },
         { "isa", "mmx", "isa" },
