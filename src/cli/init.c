@@ -303,12 +303,13 @@ static noc_status check_text(const char *path, const char *text) {
     return NOC_ERR_FORMAT;
 }
 
-/* Written beside its place and linked there when it is whole: one that is there is never overwritten. */
+/* Written beside its place and linked there when it is whole and on the disk: one that is there is never overwritten.
+ * EINVAL: the file system has nothing to write through. */
 static noc_status write_text(const char *folder, const char *path, const char *text) {
     char *temporary = cli_format("%s/.city.yaml.%ld", folder, (long)getpid());
     unlink(temporary);
     FILE *out = fopen(temporary, "wx");
-    bool failed = !out || fputs(text, out) < 0;
+    bool failed = !out || fputs(text, out) < 0 || fflush(out) || (fsync(fileno(out)) && errno != EINVAL);
     failed = (out && fclose(out)) || failed || link(temporary, path);
     if (failed)
         cli_error("%.400s: %s", path, strerror(errno));

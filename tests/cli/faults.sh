@@ -119,4 +119,23 @@ faults "influence volumes as OBJ" in/x.obj render builtin:single --candidates in
     --threads 1 -o away.png --influence-obj in/x.obj
 "$program" build in/city.gml -q -o in/city.noct 2>err
 picture "a built city" in/city.noct
+# A recipe that init makes has its name when it is on the disk.
+mkdir in/made
+failing 0 report "$program" init in/made in/city.gml
+calls=$(tail -n 1 report) why= synced=
+[ $status = 0 ] && mv in/made/city.yaml made.yaml || why="status $status: $(cat err)"
+i=1
+while [ -z "$why" ] && [ "$i" -le "$calls" ]; do
+    failing "$i" report "$program" init in/made in/city.gml
+    case $(head -n 1 report) in fsync*city.yaml*) synced=1 ;; esac
+    if [ $status = 0 ]; then
+        cmp -s in/made/city.yaml made.yaml || why="another recipe, and no error"
+    elif [ -n "$(ls -A in/made)" ] || ! grep -q '^nocturne: ' err; then
+        why="status $status, it leaves $(ls -A in/made)"
+    fi
+    [ -z "$why" ] || why="$why: $i of $calls, $(head -n 1 report)"
+    rm -f in/made/city.yaml
+    i=$((i + 1))
+done
+[ -z "$why" ] && [ -n "$synced" ]; result $? "a recipe that is made: $calls calls" "${why:-it is not written through}"
 finish
