@@ -1,5 +1,6 @@
 /* OpenEXR, writing, by its C core: pictures as linear float cd/m2 with their mask, channels as floats; ZIP, with units.
  */
+#include "image/exr_zip.h"
 #include "image/internal.h"
 
 #include <errno.h>
@@ -16,6 +17,7 @@ typedef struct exr_writer {
     noc_status status;
     float *rgb;        /* one chunk, finite */
     uint16_t *emitter; /* one chunk, half */
+    exr_zip zip;
 } exr_writer;
 
 static noc_status status_of(exr_result_t code) { return code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO; }
@@ -143,7 +145,8 @@ static void write_chunks(exr_writer *w) {
     bool mask = w->image && w->image->emitter;
     w->rgb = noc_alloc_large(n, (size_t)components(w) * sizeof(float));
     w->emitter = mask ? noc_alloc_large(n, sizeof(uint16_t)) : NULL;
-    if (!w->rgb || (mask && !w->emitter)) {
+    bool zips = exr_zip_begin(&w->zip, n * ((size_t)components(w) * sizeof(float) + sizeof(uint16_t)));
+    if (!w->rgb || (mask && !w->emitter) || !zips) {
         w->status = noc_error(w->log, NOC_ERR_MEMORY, "%s: EXR: no memory", w->out->path);
         return;
     }
@@ -158,10 +161,13 @@ static void write_chunks(exr_writer *w) {
         else if (good)
             good = ok(w, exr_encoding_update(w->context, w->part, &chunk, &encode)) && set_channels(w, &encode);
         if (good) {
+            encode.compress_fn = exr_zip_chunk;
+            encode.encoding_user_data = &w->zip;
             fill_chunk(w, y, chunk.height);
             good = ok(w, exr_encoding_run(w->context, w->part, &encode));
         }
     }
+    encode.compressed_buffer = NULL; /* of the zip */
     if (encode.context)
         exr_encoding_destroy(w->context, &encode);
 }
@@ -184,6 +190,7 @@ static noc_status write_file(exr_writer *w, const meta_list *meta) {
     writing = NULL;
     free(w->rgb);
     free(w->emitter);
+    exr_zip_end(&w->zip);
     return w->status;
 }
 

@@ -89,6 +89,46 @@ static void exr_keeps_every_bit(void **state) {
         }
 }
 
+/* Noise is packed by a quick way, of which the head of zlib's stream tells, what repeats is packed well, and a chunk
+ * that does not shrink is as it was. */
+static void exr_is_compressed_quickly(void **state) {
+    (void)state;
+    enum { EVEN, NOISE, BITS, KINDS };
+    for (int k = 0; k < KINDS; k++) {
+        noc_image *image = noc_image_create(64, 16, log_);
+        uint64_t s = 1;
+        for (size_t i = 0; i < 3 * image_pixels(image); i++) {
+            s = s * 6364136223846793005u + 1442695040888963407u;
+            uint32_t bits = (uint32_t)(s >> 32) & 0xbfffffff; /* finite */
+            image->rgb[i] = k == EVEN ? 1 : (s >> 20) % 3 ? 1 + 0x1p-32f * (float)(s >> 32) : 0;
+            if (k == BITS)
+                memcpy(&image->rgb[i], &bits, sizeof(bits));
+        }
+        assert_int_equal(noc_image_write(image, in_folder("q.exr"), NULL, NULL, log_), NOC_OK);
+        exr_context_t c;
+        exr_chunk_info_t chunk;
+        assert_int_equal(exr_start_read(&c, in_folder("q.exr"), NULL), EXR_ERR_SUCCESS);
+        assert_int_equal(exr_read_scanline_chunk_info(c, 0, 0, &chunk), EXR_ERR_SUCCESS);
+        uint8_t *bytes = test_malloc(chunk.packed_size);
+        assert_int_equal(exr_read_chunk(c, 0, &chunk, bytes), EXR_ERR_SUCCESS);
+        assert_int_equal(chunk.unpacked_size, 3 * sizeof(float) * image_pixels(image));
+        assert_true(k == BITS || (bytes[0] & 15) == 8); /* RFC 1950: deflate */
+        if (k == EVEN)
+            assert_true(chunk.packed_size < chunk.unpacked_size / 50);
+        else if (k == NOISE)
+            assert_true(chunk.packed_size < chunk.unpacked_size && bytes[1] >> 6 == 0); /* by the fastest algorithm */
+        else
+            assert_int_equal(chunk.packed_size, chunk.unpacked_size);
+        test_free(bytes);
+        exr_finish(&c);
+        noc_image *back = noc_image_read(in_folder("q.exr"), log_, NULL);
+        assert_non_null(back);
+        assert_memory_equal(back->rgb, image->rgb, 3 * sizeof(float) * image_pixels(image));
+        noc_image_destroy(back);
+        noc_image_destroy(image);
+    }
+}
+
 static void png_is_within_quantisation(void **state) {
     (void)state;
     noc_image *a = noc_image_create(256, 3, log_);
@@ -470,6 +510,7 @@ static void sizes_are_checked(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_keeps_every_bit),
+        cmocka_unit_test(exr_is_compressed_quickly),
         cmocka_unit_test(png_is_within_quantisation),
         cmocka_unit_test(srgb8_survives),
         cmocka_unit_test(png_holds_metadata),
