@@ -281,6 +281,8 @@ void noc_cpu_draw_influence(const stage_run *run, worker *w, const tile_points *
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
  * into w->lists.list */
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points);
+/* Are the reservoirs of a frame read? Where all samples share rays, only views are made of them. */
+bool noc_cpu_keeps_reservoirs(const noc_render_params *params);
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile t);
 void noc_cpu_resample(stage_run *run, worker *w, tile t);
 void noc_cpu_shade_shared(stage_run *run, worker *w, tile t);

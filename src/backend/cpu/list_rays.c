@@ -131,6 +131,10 @@ void noc_cpu_resample(stage_run *run, worker *w, tile at) {
     }
 }
 
+bool noc_cpu_keeps_reservoirs(const noc_render_params *p) {
+    return p->method != NOC_METHOD_RIS || p->candidates != NOC_CANDIDATES_LISTS || noc_views_need_reservoirs(p->aovs);
+}
+
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->lists->rays;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
@@ -140,7 +144,8 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
             t->segments[i].unoccluded = t->segments[i].valid;
     for (int i = 0; i < t->count; i++)
         block_samples(&t->draws[i].r, ~t->segments[i].unoccluded);
-    for (int n = 0, i = 0; n < (at.y1 - at.y0) * (at.x1 - at.x0); n++) {
+    bool kept = noc_cpu_keeps_reservoirs(run->frame->params);
+    for (int n = 0, i = 0; kept && n < (at.y1 - at.y0) * (at.x1 - at.x0); n++) {
         stand_in(run, w, n, i, &run->s->b.r[run->stage->target][t->at[n]]);
         run->s->b.visible[run->stage->target][t->at[n]] = 0;
         while (i < t->count && t->draws[i].block == n)

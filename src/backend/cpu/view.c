@@ -2,16 +2,22 @@
 #include "backend/cpu/cpu.h"
 #include "core/presample_limits.h"
 
+/* Buffers of a picture are pages of their own: what a frame never touches (surfaces before the first one, reservoirs
+ * that nothing reads) costs none, and fresh ones need not be cleared. */
+#define MAKE(p, blocks) (((p) = noc_alloc_pages((blocks) * sizeof(*(p)))) != NULL)
+#define FREE(p, blocks) noc_free_pages(p, (blocks) * sizeof(*(p)))
+
 static void free_buffers(frame_buffers *b) {
+    size_t blocks = (size_t)b->blocks_x * b->blocks_y;
     for (int i = 0; i < 2; i++)
-        free(b->g[i]);
+        FREE(b->g[i], blocks);
     for (int i = 0; i < NOC_RESERVOIR_SETS; i++) {
-        free(b->r[i]);
-        free(b->visible[i]);
+        FREE(b->r[i], blocks);
+        FREE(b->visible[i], blocks);
     }
-    free(b->colour);
-    free(b->picture);
-    free(b->emitter);
+    FREE(b->colour, blocks);
+    FREE(b->picture, blocks);
+    FREE(b->emitter, blocks);
     free(b->instance);
     noc_coverage_free(&b->coverage);
     noc_views_free(&b->views);
@@ -76,23 +82,16 @@ static size_t bytes_a_block(int sets) {
 
 static bool allocate_sets(frame_buffers *b, int sets) {
     size_t blocks = (size_t)b->blocks_x * b->blocks_y;
-    for (; b->sets < sets; b->sets++) {
-        b->r[b->sets] = noc_alloc_large(blocks, sizeof(rblock));
-        b->visible[b->sets] = noc_alloc_large(blocks, sizeof(uint16_t));
-        if (!b->r[b->sets] || !b->visible[b->sets])
+    for (; b->sets < sets; b->sets++)
+        if (!MAKE(b->r[b->sets], blocks) || !MAKE(b->visible[b->sets], blocks))
             return false;
-    }
     return true;
 }
 
 static bool allocate_picture(frame_buffers *b) {
     size_t blocks = (size_t)b->blocks_x * b->blocks_y;
-    for (int i = 0; i < 2; i++)
-        if (!(b->g[i] = noc_alloc_large(blocks, sizeof(gblock))))
-            return false;
-    return (b->colour = noc_alloc_large(blocks, sizeof(cblock))) &&
-           (b->picture = noc_alloc_large(blocks, sizeof(cblock))) &&
-           (b->emitter = noc_alloc_large(blocks, sizeof(uint16_t)));
+    return MAKE(b->g[0], blocks) && MAKE(b->g[1], blocks) && MAKE(b->colour, blocks) && MAKE(b->picture, blocks) &&
+           MAKE(b->emitter, blocks);
 }
 
 noc_status noc_cpu_view_resize(void *state, int width, int height, int sets) {
