@@ -233,9 +233,11 @@ static bool publish(const film *f, const char *name) {
 
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment) {
-    const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
+    /* what a symbolic link points to is replaced, not the link */
+    char *real = readlink(name, &(char){ 0 }, 1) > 0 ? realpath(name, NULL) : NULL;
+    const char *target = real ? real : name, *slash = strrchr(target, '/'), *base = slash ? slash + 1 : target;
     film f = { .to = -1, .part = -1 };
-    f.making = cli_format("%.*s.%.200s.%ld.part", (int)(base - name), name, base, (long)getpid());
+    f.making = cli_format("%.*s.%.200s.%ld.part", (int)(base - target), target, base, (long)getpid());
     struct sigaction before, ignore = { .sa_handler = SIG_IGN };
     sigaction(SIGPIPE, &ignore, &before); /* one that hangs up is an error, not our end */
     int unopened = open_part(&f), error = unopened ? unopened : start(&f, ffmpeg, fps, comment), ended = 0;
@@ -263,7 +265,7 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
             cli_error("%s: ffmpeg made no film of the pictures, which are there: %s", name, line);
         }
         status = NOC_ERR_IO;
-    } else if (!publish(&f, name)) {
+    } else if (!publish(&f, target)) {
         status = NOC_ERR_IO;
     }
     if (status && f.part >= 0)
@@ -273,5 +275,6 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
     if (f.said)
         fclose(f.said);
     free(f.making);
+    free(real);
     return status;
 }

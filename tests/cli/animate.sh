@@ -100,6 +100,11 @@ test "$status" = 0 && test "$(cat there/z.mp4)" = mine && grep -q 'no film of an
 result $? "a file that is something else stays"
 film --mp4 -o there/z-%02d.png
 grep -aq 'Nocturne animation' there/z.mp4; result $? "unless it is asked for"
+echo kept >elsewhere && ln -s ../elsewhere there/l.mp4
+film -o there/l.mp4
+test "$status" = 0 && test -L there/l.mp4 && grep -aq IEND elsewhere
+result $? "a film behind a link" "$(cat err)"
+rm there/l.mp4 elsewhere
 printf '#!/bin/sh\necho one >&2\necho no such codec >&2\nexit 3\n' >bin/ffmpeg
 film -o there/f.mp4
 test "$status" = 1 && grep -q 'there/f.mp4: ffmpeg made no film of the pictures, which are there: no such codec' err &&
