@@ -15,18 +15,12 @@ static bool loading(void *user, const char *what, double done) {
     return lab_go_on(user, &(noc_lab_progress){ NOC_LAB_LOADING, done, -1, what, 0, 0 });
 }
 
-/* Lamps are counted by the data; where no file has any, by the lights of the group "lamps", as in the built-in city. */
 static void take_holdings(const noc_scene *scene, const noc_report *report, lab_holdings *held) {
     noc_report_totals totals;
-    noc_group_info groups[32];
     noc_scene_get_info(scene, &held->info);
     noc_report_get_totals(report, &totals);
     held->buildings = totals.buildings;
     held->lamps = totals.lamps_mapped + totals.lamps_inferred;
-    size_t count = noc_scene_groups(scene, groups, NOC_COUNT(groups));
-    for (size_t i = 0; !held->lamps && i < NOC_MIN(count, NOC_COUNT(groups)); i++)
-        if (!strcmp(groups[i].name, "lamps"))
-            held->lamps = groups[i].lights;
 }
 
 noc_status lab_load_scene(lab_session *lab, size_t index) {

@@ -57,7 +57,8 @@ rows = {r[0]: r[1:] for r in ([c.strip() for c in l.split("|")[1:-1]] for l in r
                               if re.match(r"\| (city|built-in) \| [\d,]+ \| [\d,]+ \|", l))}
 for name, path in ("city", "info.json"), ("built-in", "builtin.json"):
     s = json.load(open(path))["scene"]
-    lamps = s["lamps_mapped"] + s["lamps_inferred"] or next(g["lights"] for g in s["groups"] if g["name"] == "lamps")
+    lamps = s["lamps_mapped"] + s["lamps_inferred"]
+    assert name == "city" or lamps == next(g["lights"] for g in s["groups"] if g["name"] == "lamps") > 0
     want = [s["buildings"], s["triangles"] + s["instance_triangles"], s["windows"], s["windows_lit"], lamps, s["cars"],
             s["lights"]]
     got = [int(c.replace(",", "")) for c in rows[name][:7]]

@@ -158,12 +158,19 @@ static size_t walls(const struct run *r) {
     return info.triangles_by_class[NOC_CLASS_WALL];
 }
 
-/* Walls of a built-in scene stand on its own ground: no ground of ours closes their doors and shops. */
+/* Walls of a built-in scene stand on its own ground: no ground of ours closes their doors and shops. Its lamps count.
+ */
 static void test_built_in(void **state) {
     (void)state;
     struct run r;
     char houses[4000];
     LOAD(&r, DEFAULTS, "builtin:city");
+    noc_group_info groups[32];
+    noc_report_totals totals;
+    int lamps = noc_scene_find_group(r.scene, "lamps");
+    assert_true(lamps > 0 && noc_scene_groups(r.scene, groups, 32) <= 32 && groups[lamps].lights > 300);
+    noc_report_get_totals(r.report, &totals);
+    assert_int_equal(totals.lamps_mapped, groups[lamps].lights);
     size_t alone = walls(&r);
     finish(&r);
     LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)));

@@ -150,6 +150,15 @@ static noc_status name_streets(importer *im, const input *in) {
     return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
 }
 
+/* Lights from number `first` on that are of the group "lamps": of a built-in city one a lamp. */
+static size_t count_lamps(const noc_scene *scene, size_t first) {
+    int group = noc_scene_find_group(scene, "lamps");
+    size_t count = 0;
+    for (size_t i = first; group > 0 && i < scene->lights.len; i++)
+        count += noc_light_group(&scene->lights.data[i]) == (uint32_t)group;
+    return count;
+}
+
 static noc_status read_builtin(importer *im, input *in) {
     double start = noc_wall_seconds();
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len, windows = im->scene->windows.len;
@@ -169,6 +178,7 @@ static noc_status read_builtin(importer *im, input *in) {
     in->file.seconds = noc_wall_seconds() - start;
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.lights = im->scene->lights.len - lights;
+    in->file.lamps_mapped = count_lamps(im->scene, lights);
     return status;
 }
 
