@@ -327,6 +327,34 @@ static void test_other_maps(void **state) {
 #endif
 }
 
+/* A table that tells of fewer rows than there are shapes: GDAL reads those that both have, and no more is said by it.
+ */
+static void test_a_shapefile_of_parts_that_disagree(void **state) {
+#if NOC_HAVE_GDAL
+    for (int rows = 4; rows <= 6; rows++) {
+        char path[300];
+        snprintf(path, sizeof(path), "%s.shp", temp_file("", 0));
+        write_map("ESRI Shapefile", path, 25832, 500000, 5600000);
+        memcpy(path + strlen(path) - 3, "dbf", 3);
+        FILE *f = fopen(path, "r+b");
+        assert_non_null(f);
+        assert_int_equal(fseek(f, 4, SEEK_SET), 0);
+        assert_int_equal(fputc(rows, f), rows);
+        fclose(f);
+        memcpy(path + strlen(path) - 3, "shp", 3);
+        lamp_sink s;
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps(&s, path, NULL), NOC_OK);
+        assert_int_equal(s.lamps.len, rows < 5 ? rows : 5);
+        assert_int_equal(issue_count(&s, "not in both"), rows != 5);
+        lamp_sink_end(&s);
+        GDALDeleteDataset(GDALGetDriverByName("ESRI Shapefile"), path);
+    }
+#else
+    skip();
+#endif
+}
+
 /* ---- answers of servers ---- */
 
 #if NOC_HAVE_GDAL
@@ -531,6 +559,7 @@ int main(void) {
         cmocka_unit_test(test_geojson),
         cmocka_unit_test(test_osm),
         cmocka_unit_test(test_other_maps),
+        cmocka_unit_test(test_a_shapefile_of_parts_that_disagree),
         cmocka_unit_test(test_cut),
         cmocka_unit_test(test_mutated),
         cmocka_unit_test(test_unread),

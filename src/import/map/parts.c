@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <inttypes.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -48,6 +49,36 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
     free(folder);
     return status;
 }
+
+#if NOC_HAVE_GDAL
+/* Reads the first bytes of the part with that ending, in one case or the other. */
+static bool read_head(const char *path, const char *const endings[2], uint8_t *head, size_t size) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    size_t n = 0;
+    for (int i = 0; i < 2 && !n; i++) {
+        char *part = noc_format("%.*s%s", (int)(dot ? (size_t)(dot - path) : strlen(path)), path, endings[i]);
+        VSILFILE *f = part ? gdal.VSIFOpenL(part, "rb") : NULL;
+        n = f ? gdal.VSIFReadL(head, 1, size, f) : 0;
+        if (f)
+            gdal.VSIFCloseL(f);
+        free(part);
+    }
+    return n == size;
+}
+
+void map_count_shapefile(const char *path, char *text, size_t size) {
+    uint8_t dbf[8], shx[28];
+    *text = 0;
+    if (!read_head(path, (const char *[]){ ".dbf", ".DBF" }, dbf, sizeof(dbf)) ||
+        !read_head(path, (const char *[]){ ".shx", ".SHX" }, shx, sizeof(shx)))
+        return;
+    uint32_t rows = dbf[4] | (uint32_t)dbf[5] << 8 | (uint32_t)dbf[6] << 16 | (uint32_t)dbf[7] << 24;
+    uint32_t words = (uint32_t)shx[24] << 24 | (uint32_t)shx[25] << 16 | (uint32_t)shx[26] << 8 | shx[27];
+    uint32_t shapes = words > 50 ? (words - 50) / 4 : 0; /* words of two bytes: a head of 50, and 4 a shape */
+    if (rows != shapes)
+        snprintf(text, size, "%" PRIu32 " rows, %" PRIu32 " shapes", rows, shapes);
+}
+#endif
 
 /* ---- GeoPackage ---- */
 

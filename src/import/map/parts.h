@@ -3,12 +3,19 @@
 #define NOC_IMPORT_MAP_PARTS_H
 
 #include "import/import.h"
+#include "import/map/gdal.h"
 #include "import/scratch.h"
 
 #define MAP_COPY_NAME "copy.gpkg"
 
 /* Are the parts of the Shapefile at path regular files in its folder? An error is reported. */
 noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log);
+
+#if NOC_HAVE_GDAL
+/* Says in text[size] how many rows and shapes the Shapefile has, where its .dbf and its .shx disagree; else "". path is
+ * GDAL's. GDAL reads those that both have, and tells nobody. */
+void map_count_shapefile(const char *path, char *text, size_t size);
+#endif
 
 /* A GeoPackage with changes that are still in a log beside it is copied with it to a folder of our own, because SQLite
  * would write them into the file. The copy has the holes of the original, and is held to the budget's memory.

@@ -272,6 +272,8 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     noc_status status = gdal_path(stream, log, &path, &m->plain);
     if (!status && m->plain && format->kind == MAP_SHAPEFILE)
         status = map_check_shapefile(m->name, anywhere, log);
+    if (!status && format->kind == MAP_SHAPEFILE)
+        map_count_shapefile(path, m->unpaired, sizeof(m->unpaired));
     if (!status && m->plain && format->kind == MAP_GEOPACKAGE) {
         status = map_copy_geopackage(m->name, anywhere, noc_stream_budget(stream), log, &m->copy);
         copied = m->copy.path != NULL;

@@ -17,11 +17,12 @@ typedef struct map_format {
 
 typedef struct map_source {
     GDALDatasetH dataset;
-    char error[512]; /* GDAL's first failure since it was opened, "" if none */
-    char link[200];  /* the first address that a content asked for, "" if none: it is not fetched */
-    bool entered;    /* GDAL is there, and this thread's settings of it are ours */
-    bool plain;      /* GDAL reads the file itself, neither unpacked nor from an archive */
-    bool crs_named;  /* false: a GeoJSON without one, whose CRS is its format's */
+    char error[512];   /* GDAL's first failure since it was opened, "" if none */
+    char link[200];    /* the first address that a content asked for, "" if none: it is not fetched */
+    char unpaired[64]; /* of a Shapefile: rows and shapes, where they are not as many, else "" */
+    bool entered;      /* GDAL is there, and this thread's settings of it are ours */
+    bool plain;        /* GDAL reads the file itself, neither unpacked nor from an archive */
+    bool crs_named;    /* false: a GeoJSON without one, whose CRS is its format's */
     const char *name, *format;
     noc_log *log;
     scratch_folder copy; /* with our own copy of the file, where it is not read in place */

@@ -422,6 +422,9 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
     if (!status && m.source.link[0] && !(params && params->crs))
         geo_issue(sink->issues, GEO_GUESSED, "CRS that is a link, not followed: longitudes and latitudes instead",
                   "crs");
+    if (m.source.unpaired[0])
+        geo_issue(sink->issues, GEO_SKIPPED,
+                  "rows and shapes of a Shapefile that are not in both, its .dbf and its .shx", m.source.unpaired);
     if (!status)
         status = read_layers(&m);
     status = status ? status : map_source_check(&m.source, stream);
