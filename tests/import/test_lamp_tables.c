@@ -121,6 +121,23 @@ static void test_named_csv(void **state) {
     lamp_sink_end(&s);
 }
 
+/* Fields that are not UTF-8 are Windows-1252; what is told of them is UTF-8. */
+static void test_windows_1252(void **state) {
+    lamp_sink s;
+    lamp_sink_start(&s);
+    const char *table = "lat,lon,lumens,stra\xdf"
+                        "e,\x80,gr\xc3\xbcn\n"
+                        "52\xb0 30' N,13.5,3000,Hauptstra\xdf"
+                        "e,\x93x\x94\xff,gr\xc3\xbcn\n";
+    assert_int_equal(read_lamps_text(&s, table, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    assert_float_equal(s.lamps.data[0].xyz[1], 52.5, 1e-9);
+    assert_string_equal(column(&s, "straße")->example, "Hauptstraße");
+    assert_string_equal(column(&s, "€")->example, "“x”ÿ");
+    assert_string_equal(column(&s, "grün")->example, "grün");
+    lamp_sink_end(&s);
+}
+
 static void test_looked_at(void **state) { /* by info: no error, and the columns are told */
     lamp_sink s;
     lamp_sink_start(&s);
@@ -394,13 +411,13 @@ static void test_named_overpass(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units_of_keys),   cmocka_unit_test(test_units_in_tables),
-        cmocka_unit_test(test_named_csv),       cmocka_unit_test(test_looked_at),
-        cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
-        cmocka_unit_test(test_mapped_units),    cmocka_unit_test(test_refs),
-        cmocka_unit_test(test_thousands),       cmocka_unit_test(test_bare_type),
-        cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),
-        cmocka_unit_test(test_named_overpass),
+        cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables),
+        cmocka_unit_test(test_named_csv),     cmocka_unit_test(test_windows_1252),
+        cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),
+        cmocka_unit_test(test_bad_maps),      cmocka_unit_test(test_mapped_units),
+        cmocka_unit_test(test_refs),          cmocka_unit_test(test_thousands),
+        cmocka_unit_test(test_bare_type),     cmocka_unit_test(test_kinds_in_values),
+        cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
-/* Records of a table: commas, semicolons, tabs or bars between fields, quotes as in RFC 4180, UTF-8, UTF-16 or Latin-1.
- */
+/* Records of a table: commas, semicolons, tabs or bars between fields, quotes as in RFC 4180, UTF-8, UTF-16 or
+ * Windows-1252, which Latin-1 is a part of. */
 #include "import/lamps/records.h"
+
+#include <nocturne/text.h>
 
 #define MAX_FIELD (1 << 20)
 #define MAX_FIELDS 4096
@@ -65,6 +67,40 @@ static noc_status bad(csv *c, const char *cause) {
 
 static noc_status no_memory(csv *c) { return noc_no_memory(c->log, noc_stream_name(c->stream)); }
 
+static bool is_utf8(const char *s) {
+    for (size_t n; *s; s += n)
+        if (!(n = (unsigned char)*s < 0x80 ? 1 : noc_text_utf8(s)))
+            return false;
+    return true;
+}
+
+/* Makes UTF-8 of the last field, which ends with a 0, where it is Windows-1252. */
+static bool make_utf8(csv *c, size_t field) {
+    static const uint16_t at_80[32] = { 0x20ac, 0x81,   0x201a, 0x192,  0x201e, 0x2026, 0x2020, 0x2021,
+                                        0x2c6,  0x2030, 0x160,  0x2039, 0x152,  0x8d,   0x17d,  0x8f,
+                                        0x90,   0x2018, 0x2019, 0x201c, 0x201d, 0x2022, 0x2013, 0x2014,
+                                        0x2dc,  0x2122, 0x161,  0x203a, 0x153,  0x9d,   0x17e,  0x178 };
+    if (is_utf8(c->text.data + field))
+        return true;
+    size_t size = c->text.len - field;
+    char *from = noc_alloc(size);
+    bool memory = from != NULL;
+    if (memory)
+        memcpy(from, c->text.data + field, size);
+    c->text.len = field;
+    for (size_t i = 0; i < size && memory; i++) {
+        unsigned u = (unsigned char)from[i];
+        u = u >= 0x80 && u < 0xa0 ? at_80[u - 0x80] : u;
+        const char bytes[3] = { (char)(0xe0 | u >> 12), (char)(0x80 | (u >> 6 & 63)), (char)(0x80 | (u & 63)) };
+        const char two[2] = { (char)(0xc0 | u >> 6), bytes[2] }, one = (char)u;
+        memory = u < 0x80    ? array_push(&c->text, one)
+                 : u < 0x800 ? array_append(&c->text, two, 2)
+                             : array_append(&c->text, bytes, 3);
+    }
+    free(from);
+    return memory;
+}
+
 noc_status csv_read(csv *c) {
     noc_status status = NOC_OK;
     if (c->again) {
@@ -121,7 +157,7 @@ noc_status csv_read(csv *c) {
             c->text.len--;
         if (c->start.len == MAX_FIELDS)
             return bad(c, "more than 4096 columns");
-        if (!array_push(&c->text, '\0') || !array_push(&c->start, field))
+        if (!array_push(&c->text, '\0') || !make_utf8(c, field) || !array_push(&c->start, field))
             return no_memory(c);
         field = c->text.len;
         if (end_record)
