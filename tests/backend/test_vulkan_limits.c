@@ -21,6 +21,7 @@ static struct {
     bool no_compute, no_device;
     VkResult opening;
     VkDeviceSize heap, budget, used, piece, buffer; /* bytes */
+    size_t cache;                                   /* bytes of compiled shaders */
 } fake;
 
 static PFN_vkEnumeratePhysicalDevices driver_vkEnumeratePhysicalDevices;
@@ -103,7 +104,21 @@ static VKAPI_ATTR void VKAPI_CALL fault_vkGetPhysicalDeviceMemoryProperties2(VkP
     }
 }
 
+static int caches_taken;
+static PFN_vkGetPipelineCacheData driver_vkGetPipelineCacheData;
+static VKAPI_ATTR VkResult VKAPI_CALL fault_vkGetPipelineCacheData(VkDevice d, VkPipelineCache c, size_t *n,
+                                                                   void *data) {
+    caches_taken += data != NULL;
+    if (!fake.cache)
+        return driver_vkGetPipelineCacheData(d, c, n, data);
+    *n = fake.cache;
+    if (data)
+        memset(data, 1, *n);
+    return VK_SUCCESS;
+}
+
 static void replace_more(void) {
+    REPLACE(vkGetPipelineCacheData);
     REPLACE(vkEnumeratePhysicalDevices);
     REPLACE(vkGetPhysicalDeviceProperties);
     REPLACE(vkGetPhysicalDeviceProperties2);
@@ -376,6 +391,50 @@ static void a_pipe_in_place_of_the_cache(void **state) {
     free(kept);
 }
 
+/* A cache of 1 GiB is not written, which no reader would take; a smaller one is. */
+static void a_cache_beyond_what_is_read(void **state) {
+    char folder[] = "/tmp/noc-vulkan-cache-XXXXXX";
+    const char *before = getenv("XDG_CACHE_HOME");
+    char *kept = before ? noc_strdup(before) : NULL;
+    (void)state;
+    if (!has_vulkan())
+        skip();
+    assert_non_null(mkdtemp(folder));
+    setenv("XDG_CACHE_HOME", folder, 1);
+    for (int small = 0; small < 2; small++) {
+        noc_device *device = open_vulkan();
+        assert_non_null(device);
+        ((vk_device *)device->state)->compile_seconds = 1; /* there is something to keep */
+        fake.cache = small ? 4096 : (size_t)1 << 30;
+        caches_taken = 0;
+        noc_device_destroy(device);
+        assert_int_equal(caches_taken, small);
+    }
+    expect_silence("caches");
+    char command[200];
+    snprintf(command, sizeof(command), "rm %s/nocturne/vulkan-*.bin && rmdir %s/nocturne %s", folder, folder, folder);
+    assert_int_equal(system(command), 0); /* one file, and nothing else */
+    if (kept)
+        setenv("XDG_CACHE_HOME", kept, 1);
+    else
+        unsetenv("XDG_CACHE_HOME");
+    free(kept);
+}
+
+/* "0" turns validation off, and says nothing where the layer is not installed. */
+static void validation_is_off(void **state) {
+    (void)state;
+    if (!has_vulkan())
+        skip();
+    setenv("NOCTURNE_VULKAN_VALIDATION", "0", 1);
+    noc_device *device = open_vulkan();
+    unsetenv("NOCTURNE_VULKAN_VALIDATION");
+    assert_non_null(device);
+    assert_true(((const vk_device *)device->state)->messenger == VK_NULL_HANDLE);
+    noc_device_destroy(device);
+    expect_silence("no validation");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(devices_say_what_they_lack, start),
@@ -385,6 +444,8 @@ int main(void) {
         cmocka_unit_test_setup(buffers_beyond_what_is_given_at_once, start),
         cmocka_unit_test_setup(models_share_allocations, start),
         cmocka_unit_test_setup(a_pipe_in_place_of_the_cache, start),
+        cmocka_unit_test_setup(a_cache_beyond_what_is_read, start),
+        cmocka_unit_test_setup(validation_is_off, start),
     };
     fault_more = replace_more;
     messages = open_messages();
