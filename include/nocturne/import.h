@@ -71,6 +71,9 @@ NOC_DEFAULT_PARAMS(noc_traffic_params, noc_traffic_default_params, NOC_TRAFFIC_D
 typedef struct noc_import_params {
     /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
     const char *crs;
+    /* "FILE=CRS": CRS of inputs in place of the one that they name. FILE is an input, the end of its path, or a pattern
+     * of either; an error if no input is called so. Of several for one input the last counts */
+    noc_texts file_crs;
     /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
      * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     const char *scene_crs;
@@ -228,6 +231,7 @@ typedef struct noc_report_file {
     const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
     const char *crs_given;     /* as spelled in the file, "" if none */
     bool crs_taken;            /* the file names none: it is its format's, or what its numbers tell */
+    bool crs_overridden;       /* crs is noc_import_params.file_crs's, whatever the file names */
     uint64_t bytes;            /* as stored */
     uint64_t bytes_read;       /* after decompression */
     double seconds;

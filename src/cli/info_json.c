@@ -144,7 +144,8 @@ static void report_file(const noc_report_file *file, bool timing) {
     text("format", file->format);
     text("crs", file->crs);
     text("crs_given", file->crs_given);
-    text("crs_from", *file->crs_given ? "file" : file->crs_taken ? "format" : *file->crs ? "option" : "");
+    const char *from = *file->crs_given ? "file" : file->crs_taken ? "format" : *file->crs ? "option" : "";
+    text("crs_from", file->crs_overridden ? "option" : from);
     number("bytes", (double)file->bytes);
     number("bytes_unpacked", (double)file->bytes_read);
     if (timing)

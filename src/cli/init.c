@@ -165,6 +165,15 @@ static void print_others(FILE *out, const init_args *args, const found *all) {
             print_key(out, args, o, o->name, "");
 }
 
+/* Those of files that name a wrong one. */
+static void print_file_crs(FILE *out, const noc_texts *texts) {
+    for (size_t i = 0; i < texts->count; i++) {
+        fputs(i ? "  - " : "\nfile-crs:\n  - ", out);
+        cli_yaml_text(out, texts->text[i]);
+        fputc('\n', out);
+    }
+}
+
 /* Files that are told of with --lamps, and what columns are read as. */
 static void print_texts(FILE *out, const noc_texts *texts, const char *key, const char *remark) {
     fprintf(out, "%s  %s: [", texts->count ? "" : "#", key);
@@ -268,6 +277,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
         return status;
     if (all.without_crs && !args->import.crs)
         fputs("\n# Some inputs name no CRS: crs puts them in place.", out);
+    print_file_crs(out, &args->import.file_crs);
     print_others(out, args, &all);
     print_lamps(out, args, &all);
     print_section(out, args, "windows", "window-", "Windows", false);

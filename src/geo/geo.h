@@ -322,6 +322,8 @@ typedef struct geo_sink {
     const geo_sides *sides; /* NULL: all comes in its turn */
     bool named_lamps;       /* the user says that the file's points are lamps */
     bool named_tracks;      /* that its lines are tracks: those of maps come as roads, whatever they are */
+    bool given_metres;      /* the user gives the file's CRS, whatever it names, and it is projected, */
+    bool given_degrees;     /* or geographic */
     bool inspect;           /* a file of no use is told about, and no error */
 } geo_sink;
 

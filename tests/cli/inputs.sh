@@ -201,6 +201,50 @@ else
     skip "info of each lamp" "no GDAL"
 fi
 
+# A file whose CRS is the wrong one: its lamps land where they should, and no others move.
+lamp_of() { # NAME X Y of a GeoJSON's lamp; in which CRS: its "crs" member
+    printf '{"type":"FeatureCollection",%s"features":[{"type":"Feature","properties":{"highway":"street_lamp"},
+"geometry":{"type":"Point","coordinates":[%s,%s]}}]}' "$4" "$2" "$3" >"$1"
+}
+member='"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::'
+lamp_of other.geojson 11.4225 48.7549 ''
+where() { # the lamp's easting and northing by the file's name, without its arm
+    python3 - "$1" <<'END'
+import csv, sys
+for row in csv.DictReader(open("out")):
+    if row["file"] == sys.argv[1]:
+        print(round(float(row["x"]) / 5) * 5, round(float(row["y"]) / 5) * 5)
+END
+}
+if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
+    run info --each-lamp "$gml" other.geojson
+    other=$(where other.geojson)
+    for named in 25833 4326; do
+        lamp_of wrong.geojson 678020 5403020 "$member$named\"}},"
+        run info --each-lamp "$gml" wrong.geojson other.geojson --file-crs wrong.geojson=EPSG:25832
+        test $status = 0 && test "$(where wrong.geojson)" = "678020 5403020" && test "$other" &&
+            test "$(where other.geojson)" = "$other" &&
+            grep -q "wrong.geojson: its coordinates are taken as EPSG:25832 (.*what it names, EPSG:$named (" err
+        result $? "lamps under the name of another CRS, EPSG:$named" "$(cat err)"
+    done
+    run info --json wrong.geojson --file-crs wrong.geojson=EPSG:25832
+    grep -q '"crs_from": "option"' out && grep -q '"crs_given": "EPSG:4326"' out
+    result $? "and info tells both"
+    printf 'nocturne: 1\ninputs: [%s, sub/wrong.geojson]\nfile-crs: sub/wrong.geojson=EPSG:25832\n' "$gml" >wrong.yaml
+    mkdir sub && cp wrong.geojson sub
+    run info --each-lamp wrong.yaml
+    test $status = 0 && test "$(where sub/wrong.geojson)" = "678020 5403020"
+    result $? "and so does a recipe" "$(cat err)"
+    run init made "$gml" sub/wrong.geojson --file-crs wrong.geojson=EPSG:25832
+    run info --each-lamp made/city.yaml
+    test $status = 0 && test "$(where made/../sub/wrong.geojson)" = "678020 5403020"
+    result $? "and one that init makes" "$(cat err)"
+else
+    skip "lamps under the name of another CRS" "no GDAL"
+fi
+expect "a file that is no input" 1 '"lost.gml=EPSG:25832": no input is called so' render "$gml" -o x.png \
+    --file-crs lost.gml=EPSG:25832
+
 # GDAL is loaded where a map is read, and only there: one that is none stands in its way.
 if [ "$("$program" --version | grep -ci 'gdal [0-9]')" != 0 ] && ! ldd "$program" | grep -q lib[at]san; then
     library=$(sed -n 's/#define NOC_GDAL_LIBRARY "\(.*\)"/\1/p' "$NOC_BUILD/noc_config.h")

@@ -371,6 +371,127 @@ static void test_strange_crs(void **state) {
     finish(&r);
 }
 
+#define WRONG_LAMP "FAKE lamps\ncrs EPSG:25833\nlamp 678030 5404010\n" /* whose coordinates are those of EPSG:25832 */
+
+static const float *light_near(const struct run *r, double x, double y) {
+    static float at[3];
+    for (size_t i = 0; i < r->info.lights; i++) {
+        noc_light_info info;
+        assert_int_equal(noc_scene_get_light(r->scene, i, &info), NOC_OK);
+        for (int k = 0; k < 3; k++)
+            at[k] = (float)(info.centre[k] + r->scene->origin[k]);
+        if (hypot((double)at[0] - x, (double)at[1] - y) < 2) /* an arm holds it */
+            return at;
+    }
+    return NULL;
+}
+
+/* A file whose CRS is the wrong one is put right alone, under any of its names. */
+static void test_file_crs(void **state) {
+    (void)state;
+    static const char *const names[] = { "wrong=EPSG:25832", "./wrong=EPSG:25832", "nocturne-load-*/wro?g=EPSG:25832",
+                                         "wrong=+proj=utm +zone=32 +ellps=GRS80 +units=m", NULL };
+    for (size_t i = 0; i <= NOC_COUNT(names); i++) {
+        struct run r;
+        char whole[300];
+        noc_import_params p = DEFAULTS;
+        const char *wrong = file("wrong", WRONG_LAMP);
+        snprintf(whole, sizeof(whole), "%s=EPSG:25832", wrong);
+        if (i < NOC_COUNT(names)) {
+            p.file_crs = (noc_texts){ .text = { names[i] ? names[i] : whole }, .count = 1 };
+            LOAD(&r, p, file("a", CITY), wrong, file("l", NEAR_LAMP));
+        } else { /* as it is: both lamps are not where they should be, or one is lost */
+            LOAD(&r, p, file("a", CITY), wrong, file("l", NEAR_LAMP));
+            assert_null(light_near(&r, 678030, 5404010));
+            finish(&r);
+            continue;
+        }
+        assert_int_equal(r.status, NOC_OK);
+        assert_int_equal(r.info.lights, 2);
+        assert_non_null(light_near(&r, 678030, 5404010));
+        double near[3] = { 11.42278, 48.76231, 0 };
+        assert_int_equal(noc_scene_to_local(r.scene, "OGC:CRS84", near), NOC_OK);
+        assert_non_null(light_near(&r, near[0] + r.scene->origin[0], near[1] + r.scene->origin[1]));
+        if (i != 3) { /* PROJ knows no datum of that one, which is a warning more */
+            assert_int_equal(r.warnings, 1);
+            assert_non_null(strstr(r.last_warning,
+                                   "/wrong: its coordinates are taken as EPSG:25832 (ETRS89 / UTM zone 32N), by "
+                                   "--file-crs, in place of what it names, EPSG:25833 (ETRS89 / UTM zone 33N)"));
+        }
+        const noc_report_file *f = noc_report_get_file(r.report, 1);
+        assert_true(f->crs_overridden);
+        assert_string_equal(f->crs_given, "EPSG:25833");
+        assert_false(noc_report_get_file(r.report, 0)->crs_overridden);
+        assert_false(noc_report_get_file(r.report, 2)->crs_overridden);
+        finish(&r);
+    }
+}
+
+/* The last word of several counts; the right CRS brings no warning; a mesh has one of its own. */
+static void test_file_crs_more(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = with_crs("EPSG:25833", NULL);
+    p.file_crs =
+        (noc_texts){ .text = { "*=EPSG:3857", "wrong=EPSG:25832", "a=EPSG:25832", "l=OGC:CRS84", "m=EPSG:25832" },
+                     .count = 5 };
+    mesh_x = 678100, mesh_y = 5404000;
+    LOAD(&r, p, file("a", CITY), file("wrong", WRONG_LAMP), file("l", NEAR_LAMP), file("m", "FAKE mesh\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(light_near(&r, 678030, 5404010));
+    assert_string_equal(noc_report_get_file(r.report, 3)->crs, "EPSG:25832 (ETRS89 / UTM zone 32N)");
+    finish(&r);
+    static const struct {
+        const char *text, *error;
+    } bad[] = {
+        { "lost=EPSG:25832", "--file-crs \"lost=EPSG:25832\": no input is called so" },
+        { "rong=EPSG:25832", "no input is called so" },
+        { "EPSG:25832", "--file-crs \"EPSG:25832\" is not FILE=CRS" },
+        { "wrong=", "is not FILE=CRS" },
+        { "=EPSG:25832", "is not FILE=CRS" },
+        { "wrong=EPSG:no", "--file-crs wrong: the CRS \"EPSG:no\" is not understood" },
+        { "m=EPSG:4326", "--file-crs EPSG:4326: " },
+    };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        p = DEFAULTS;
+        p.file_crs = (noc_texts){ .text = { bad[i].text }, .count = 1 };
+        LOAD(&r, p, file("a", CITY), file("wrong", WRONG_LAMP), file("m", "FAKE mesh\n"));
+        assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+        assert_non_null(strstr(noc_log_last_error(r.log), bad[i].error));
+        finish(&r);
+    }
+}
+
+/* --crs moves nothing that names another CRS, and says so. Formats that have one are expected beside what it is for. */
+static void test_crs_not_used(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = with_crs("EPSG:25832", NULL);
+    const char *taken = file("t", "FAKE lamps\ncrs =OGC:CRS84\nlamp 11.42278 48.76231\n");
+    const char *other = file("o", "FAKE lamps\ncrs OGC:CRS84\nlamp 11.42279 48.76234\n");
+    LOAD(&r, p, file("a", CITY), taken); /* which names it, so that it is used */
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    finish(&r);
+    LOAD(&r, p, file("a", CITY), taken, other);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.info.lights, 2);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "--crs EPSG:25832 is for inputs that name no CRS, and is not used for "));
+    assert_non_null(strstr(r.last_warning, "/o (OGC:CRS84 (WGS 84 (CRS84)));"));
+    assert_non_null(strstr(r.last_warning, "/o=EPSG:25832"));
+    assert_null(strstr(r.last_warning, "/t ("));
+    finish(&r);
+    p.crs = "EPSG:25833"; /* of use to none */
+    LOAD(&r, p, file("a", CITY), taken);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "/a (EPSG:25832 (ETRS89 / UTM zone 32N)), "));
+    assert_non_null(strstr(r.last_warning, "/t (OGC:CRS84 (WGS 84 (CRS84)), its format's)"));
+    finish(&r);
+}
+
 /* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the
  * files. */
 static void test_planned_lamps(void **state) {
@@ -429,6 +550,9 @@ int main(void) {
         cmocka_unit_test(test_true_lengths),
         cmocka_unit_test(test_planned_lamps),
         cmocka_unit_test(test_strange_crs),
+        cmocka_unit_test(test_file_crs),
+        cmocka_unit_test(test_file_crs_more),
+        cmocka_unit_test(test_crs_not_used),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -17,6 +17,7 @@ static const field fields[] = {
     FIELD(TEXT, crs, 1),
     FIELD(TEXT, crs_given, 1),
     FIELD(BOOL, crs_taken, 1),
+    FIELD(BOOL, crs_overridden, 1),
     FIELD(U64, bytes, 1),
     FIELD(U64, bytes_read, 1),
     FIELD(DOUBLE, seconds, 1),

@@ -13,27 +13,6 @@
 
 #define MOST_THREADS 1024
 
-/* --crs and --scene-crs must be understood even where no input needs them. */
-static noc_status check_crs(const noc_import_params *p, noc_log *log) {
-    const struct {
-        const char *option, *crs;
-        bool metric;
-    } given[] = { { "--crs", p->crs, false }, { "--scene-crs", p->scene_crs, true } };
-    for (size_t i = 0; i < NOC_COUNT(given); i++) {
-        if (!given[i].crs || !given[i].crs[strspn(given[i].crs, " \t\r\n")])
-            continue;
-        noc_status status;
-        geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log, &status);
-        if (crs && given[i].metric && !geo_crs_is_metric(crs))
-            status =
-                noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
-        geo_crs_destroy(crs);
-        if (status)
-            return status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
-    }
-    return NOC_OK;
-}
-
 #define FAR_AWAY 20e3 /* m between a mesh and the rest of the scene that are worth a warning */
 
 /* Bounds of all that is in the scene so far, waiting lamps among it. Empty: lo > hi. */
@@ -67,13 +46,21 @@ static void warn_if_far(reading *r, const double lo[2], const double hi[2], size
                                      : "are its coordinates in the CRS that --crs says?");
 }
 
+/* With the input's own CRS, where the user gives it. */
+static noc_import_params params_of(const reading *r) {
+    noc_import_params params = *r->im->params;
+    params.crs = given_crs_of(r->im, r->in);
+    return params;
+}
+
 /* In the helper, or here. The sink is where progress is asked, and of maps where all goes. */
 static noc_status read_remote(reading *r, geo_sink *sink, const mesh_place *place, remote_result *result) {
     importer *im = r->im;
     input *in = r->in;
     mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
     const mesh_parts parts = mesh_scene_parts(&to);
-    noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
+    const noc_import_params params = params_of(r);
+    noc_status status = remote_read(in->reader, in->path, &params, sink, place ? &parts : NULL, result);
     pthread_mutex_lock(&im->lock);
     if (*result->format)
         in->file.format = arena_strdup(&im->report->arena, result->format);
@@ -188,8 +175,9 @@ static noc_status read_objects(reading *r, noc_stream *stream, remote_result *re
     struct look_ahead *ahead = r->im->placed ? NULL : ahead_create(r, &sink);
     if (!r->im->placed && !ahead)
         return noc_no_memory(r->log, r->in->path);
+    const noc_import_params params = params_of(r);
     noc_status status = r->in->remote ? read_remote(r, &sink, NULL, result)
-                                      : r->in->reader->read(stream, r->im->params, &sink, &r->in->file.format);
+                                      : r->in->reader->read(stream, &params, &sink, &r->in->file.format);
     if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
         if (status) {                        /* it is told, and no other */
             r->log = NULL;
@@ -257,7 +245,7 @@ static int stage(const importer *im, const input *in) {
         return BUILT_IN;
     if (in->reader->reads != NOC_READS_MESH)
         return in->reader->reads == NOC_READS_CITY ? CITIES : LAMPS;
-    return im->params->crs && *im->params->crs ? MESHES_IN_CRS : MESHES;
+    return given_crs_of(im, in) ? MESHES_IN_CRS : MESHES;
 }
 
 size_t import_threads(const noc_import_params *params, size_t items) {
@@ -337,6 +325,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         im->bytes_total += read ? (double)im->inputs[i].bytes : 0;
     }
     noc_status status = recognise_told(im);
+    if (!status)
+        status = given_crs_take(im);
     if (status)
         return status;
     size_t *inputs = noc_calloc(im->input_count, sizeof(*inputs));
@@ -353,8 +343,10 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     free(inputs);
     if (!status)
         status = check_columns(im);
-    if (!status)
+    if (!status) {
         units_check(im);
+        given_crs_warn(im);
+    }
     if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len && !im->roads.len)
         status =
             noc_error(im->log, NOC_ERR_ARGUMENT, "bbox: nothing of the inputs lies in %.10g,%.10g,%.10g,%.10g of %s",
@@ -470,7 +462,7 @@ static noc_status check_params(const noc_import_params *params, bool alone, noc_
         status = lamp_mapping_check(params, log);
     if (!status)
         status = windows_check(params, log);
-    return status || alone ? status : check_crs(params, log);
+    return status || alone ? status : given_crs_check(params, log);
 }
 
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,

@@ -49,6 +49,8 @@ typedef struct input {
     const char *path;
     const char *folder; /* the input that is a folder, in which it was found; NULL: it is named */
     bool left_out;      /* found in a folder, and of no kind that is read */
+    const char *crs;    /* that the user gives it in place of what it names; NULL: none */
+    bool crs_degrees;   /* which is geographic */
     bool is_file;       /* with the next three, which tell whether two are the same */
     uint64_t device, inode, size;
     const noc_reader *reader; /* NULL: built-in */
@@ -390,6 +392,19 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
  * CRS, else in the same local metres as all the rest. */
 noc_status place_mesh(reading *r);
 noc_status place_mesh_points(void *reading, double *xyz, size_t count);
+/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. If --crs replaces such
+ * names, there may be as many as a reader takes of one file. */
+enum { MOST_STRANGE = 8 };
+/* given_crs.c: the CRSs that the user gives. */
+noc_status given_status(noc_status status); /* Returns the status of a CRS of the user's that was not read */
+/* --crs and --scene-crs must be understood even if no input needs them. */
+noc_status given_crs_check(const noc_import_params *params, noc_log *log);
+noc_status given_crs_take(importer *im); /* gives inputs those of noc_import_params.file_crs */
+/* Returns the input's own, else that of inputs that name none; NULL: none. */
+const char *given_crs_of(const importer *im, const input *in);
+/* Sets *crs to the input's own in place of `spelling`, and warns if that is another one. */
+noc_status given_crs_override(reading *r, const char *spelling, bool taken, const char *place, geo_crs **crs);
+void given_crs_warn(importer *im); /* of inputs that name another than --crs, once all are read */
 /* axes.c: does a city, of which that is a point in the order that its CRS has, lie where the maps among the inputs do
  * only with latitude and longitude exchanged? The first call that must know reads these maps. */
 bool axes_exchanged(importer *im, const input *in, geo_crs *crs, double x, double y);

@@ -30,19 +30,10 @@ static source_crs *find_source(reading *r, const char *spelling, bool taken) {
     return NULL;
 }
 
-/* Of a CRS that the user gave. */
-static noc_status given_status(noc_status status) {
-    return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
-}
-
-/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in
- * for such names, there may be as many as a reader takes of one file. */
-enum { MOST_STRANGE = 8 };
-
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
 static noc_status resolve(reading *r, const char *spelling, const char *place, geo_crs **crs) {
     *crs = NULL;
-    const char *fallback = is_blank(r->im->params->crs) ? NULL : r->im->params->crs;
+    const char *fallback = given_crs_of(r->im, r->in);
     noc_status status;
     if (*spelling) {
         *crs = geo_crs_create_plain(spelling, place, NULL, &status);
@@ -84,7 +75,8 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
         return NOC_ERR_UNSUPPORTED; /* in its turn */
     if (!source) {
         geo_crs *crs;
-        noc_status status = resolve(r, spelling, place ? place : in->path, &crs);
+        noc_status status = in->crs ? given_crs_override(r, spelling, taken, place ? place : in->path, &crs)
+                                    : resolve(r, spelling, place ? place : in->path, &crs);
         if (status)
             return status;
         source = noc_calloc(1, sizeof(*source));
@@ -333,7 +325,8 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
         file->crs = s->crs ? arena_strdup(&r->im->report->arena, geo_crs_name(s->crs)) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
         file->crs_given = arena_strdup(&r->im->report->arena, s->taken ? "" : s->spelling);
-        file->crs_taken = s->taken && s->crs;
+        file->crs_overridden = r->in->crs != NULL;
+        file->crs_taken = s->taken && s->crs && !r->in->crs;
     }
     return r->im->report->arena.refused ? noc_no_memory(r->log, path) : NOC_OK;
 }
@@ -513,17 +506,18 @@ noc_status place_mesh(reading *r) {
     const char *path = r->in->path;
     r->source = NULL;
     r->mesh_from_origin = false;
-    if (!is_blank(r->im->params->crs)) {
+    const char *given = given_crs_of(r->im, r->in), *option = r->in->crs ? "--file-crs" : "--crs";
+    if (given) {
         noc_status status;
-        geo_crs *crs = geo_crs_create(r->im->params->crs, "--crs", r->log, &status);
+        geo_crs *crs = geo_crs_create(given, option, r->log, &status);
         bool metric = crs && geo_crs_is_metric(crs);
         geo_crs_destroy(crs);
         if (status)
             return given_status(status);
         if (metric)
             return NOC_OK;
-        return noc_error(r->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
-                         r->im->params->crs, path);
+        return noc_error(r->log, NOC_ERR_ARGUMENT, "%s %s: %s is in metres, so its CRS must be projected, in metres",
+                         option, given, path);
     }
     if (!r->im->placed) {
         noc_status status = settle_by_scene(r);

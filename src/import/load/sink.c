@@ -405,6 +405,8 @@ geo_sink sink_create(reading *r) {
                        .sides = r->sides.threads > 1 ? &r->sides : NULL,
                        .named_lamps = r->in->named_lamps,
                        .named_tracks = r->in->named_tracks,
+                       .given_metres = r->in->crs && !r->in->crs_degrees,
+                       .given_degrees = r->in->crs && r->in->crs_degrees,
                        .inspect = r->im->inspect };
 }
 

@@ -237,6 +237,8 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     char *crs;
     if (!layer_crs(layer, m->source.crs_named && !m->source.link[0], &m->writer.geographic, &crs))
         return map_no_memory(m);
+    const geo_sink *sink = m->writer.sink;
+    m->writer.geographic = (m->writer.geographic && !sink->given_metres) || sink->given_degrees;
     const char *given = m->params ? m->params->crs : NULL;
     bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);
     if (replaced)

@@ -57,7 +57,7 @@ typedef struct remote_head {
 typedef struct remote_asked {
     int32_t parent;
     uint32_t threads; /* that the helper may have */
-    bool named_lamps, inspect, footprints, roads, named_tracks, each_lamp;
+    bool named_lamps, inspect, footprints, roads, named_tracks, each_lamp, given_metres, given_degrees;
 } remote_asked;
 typedef struct remote_object {
     int32_t kind, lod;

@@ -57,7 +57,8 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
     remote_asked asked = { (int32_t)getpid(),       (uint32_t)import_threads(params, OBJ_THREADS),
                            sink->named_lamps,       sink->inspect,
                            sink->footprint != NULL, sink->road != NULL,
-                           sink->named_tracks,      params->each_lamp };
+                           sink->named_tracks,      params->each_lamp,
+                           sink->given_metres,      sink->given_degrees };
     remote_put(&one, &asked, sizeof(asked));
     remote_add(batch, REMOTE_SINK, &one);
     remote_add(batch, REMOTE_GO, &one);
@@ -95,7 +96,9 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         bool whole = remote_get(r, flags, sizeof(flags)) && flags[offsetof(remote_asked, named_lamps)] <= 1 &&
                      flags[offsetof(remote_asked, inspect)] <= 1 && flags[offsetof(remote_asked, footprints)] <= 1 &&
                      flags[offsetof(remote_asked, roads)] <= 1 && flags[offsetof(remote_asked, named_tracks)] <= 1 &&
-                     flags[offsetof(remote_asked, each_lamp)] <= 1;
+                     flags[offsetof(remote_asked, each_lamp)] <= 1 &&
+                     flags[offsetof(remote_asked, given_metres)] <= 1 &&
+                     flags[offsetof(remote_asked, given_degrees)] <= 1;
         if (whole)
             memcpy(&q->sink, flags, sizeof(flags));
         q->params.threads = (int)NOC_CLAMP(q->sink.threads, 1, OBJ_THREADS);

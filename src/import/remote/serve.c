@@ -237,6 +237,8 @@ static void serve(serving *s) {
                       .features = on_features,
                       .named_lamps = s->asked.sink.named_lamps,
                       .named_tracks = s->asked.sink.named_tracks,
+                      .given_metres = s->asked.sink.given_metres,
+                      .given_degrees = s->asked.sink.given_degrees,
                       .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
     const char *format = s->asked.reader->name;
