@@ -1,8 +1,8 @@
-/* fail_call FOLDER N REPORT PROGRAM [ARGUMENT...]: runs the program and lets the N-th call of the kernel that reads,
- * writes, flushes or renames a regular file under FOLDER fail with EIO, in whichever of its processes and threads. N 0:
- * none; N+: and all later ones on that file, as of a disk that has gone bad.
- * REPORT gets a line with the number of such calls, and one with the call that failed and its file. Exits as the
- * program does, 128 + signal where one ended it, 77 where this machine cannot do it. Linux on x86-64. */
+/* fail_call FOLDER N REPORT PROGRAM [ARGUMENT...]: runs the program and lets the N-th call of the kernel that opens,
+ * makes, reads, writes, flushes or renames a regular file under FOLDER fail with EIO, in whichever of its processes and
+ * threads. N 0: none; N+: and all later ones on that file, as of a disk that has gone bad. REPORT gets a line with the
+ * number of such calls, and one with the call that failed and its file. Exits as the program does, 128 + signal where
+ * one ended it, 77 where this machine cannot do it. Linux on x86-64. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -46,6 +46,8 @@ static const call calls[] = {
     { SYS_sendfile, "sendfile", true, 0 },   { SYS_rename, "rename", false, 0 },
     { SYS_renameat, "renameat", false, 1 },  { SYS_renameat2, "renameat2", false, 1 },
     { SYS_link, "link", false, 0 },          { SYS_linkat, "linkat", false, 1 },
+    { SYS_creat, "creat", false, 0 },        { SYS_open, "open", false, 0 },
+    { SYS_openat, "openat", false, 1 },
 };
 enum { CALLS = sizeof(calls) / sizeof(*calls) };
 
@@ -68,6 +70,22 @@ static bool filter(void) {
 static bool is_regular(const char *path) {
     struct stat st;
     return !stat(path, &st) && S_ISREG(st.st_mode);
+}
+
+/* Is a file of that path, which is not there, in the folder? */
+static bool would_be_in(const char *path, const char *folder) {
+    char parent[PATH_MAX], whole[PATH_MAX];
+    snprintf(parent, sizeof(parent), "%s", path);
+    char *slash = strrchr(parent, '/');
+    if (!slash || access(path, F_OK) == 0)
+        return false;
+    *slash = 0;
+    return realpath(parent, whole) && !strcmp(whole, folder);
+}
+
+/* Returns true if the path is one of another folder's descriptor. */
+static bool is_elsewhere(const call *c, const unsigned long long *arguments, const char *path) {
+    return c->path == 1 && *path != '/' && (int)arguments[0] != AT_FDCWD;
 }
 
 /* The file of that call; false where it has none that counts. Paths that do not begin with / are taken as those of the
@@ -95,7 +113,11 @@ static bool file_of(pid_t tid, const call *c, const unsigned long long *argument
     size_t length = strlen(folder);
     if (*file == '/' && (strncmp(file, folder, length) || file[length] != '/'))
         return false;
-    return is_regular(file);
+    if (is_elsewhere(c, arguments, file))
+        return false;
+    bool makes = c->number == SYS_creat ||
+                 ((c->number == SYS_open || c->number == SYS_openat) && (arguments[c->path + 1] & O_CREAT));
+    return is_regular(file) || (makes && would_be_in(file, folder));
 }
 
 static void stop(pid_t tid, const char *folder, const char *fail, unsigned long *count, FILE *report) {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Each reading, writing, flushing and renaming of an input or output fails, in turn, in whichever process of the program
+# Each opening, reading, writing, flushing and renaming of an input or output fails, in turn, in whichever process of the program
 # it is, and of an input what is done to it from then on (fail_call.c). The program then ends with an error, leaves what
 # stood in the output's place, and nothing else; or its output has the same numbers; or a warning names the file.
 . "$(dirname "$0")/lib.sh"
