@@ -138,4 +138,42 @@ while [ -z "$why" ] && [ "$i" -le "$calls" ]; do
     i=$((i + 1))
 done
 [ -z "$why" ] && [ -n "$synced" ]; result $? "a recipe that is made: $calls calls" "${why:-it is not written through}"
+
+# Rows of an experiment that goes on behind a row that was cut short: the run after the one that failed ends with each
+# row once, and those that were there are there at any time.
+cat >spec.json <<'SPEC'
+{ "scene": { "name": "one", "inputs": ["builtin:single"] }, "cameras": [ { "name": "own", "view": "own" } ],
+  "size": "16x9", "reference": { "rays": 1, "frames": 1 }, "frames": 1, "repetitions": 1, "shown": [],
+  "configurations": [ { "name": "a" }, { "name": "b", "method": "is" } ] }
+SPEC
+mkdir after again
+"$program" experiment spec.json -o all --cache cache -q >out 2>err
+{ head -n 3 all/results.csv && sed -n 4p all/results.csv | head -c 40; } >start.csv
+calls=0 i=0
+while [ "$i" -le "$calls" ]; do
+    rm -rf in && mkdir in && cp start.csv in/results.csv
+    failing "$i" report "$program" experiment spec.json -o in --cache cache -q
+    [ "$i" != 0 ] || calls=$(tail -n 1 report)
+    cp in/results.csv "after/$i"
+    { [ $status = 0 ] || { [ $status = 1 ] && grep -q '^nocturne: ' err; }; } && echo $status >"after/$i.status"
+    "$program" experiment spec.json -o in --cache cache -q >out 2>err && cp in/results.csv "again/$i"
+    i=$((i + 1))
+done
+python3 - "$calls" >why 2>&1 <<'PY'
+import csv, sys
+def rows(path):
+    return list(csv.reader(open(path, newline="")))
+header, *kept = rows("start.csv")[:3]
+whole = [(c, mode) for c in "ab" for mode in ("accumulated", "alone")]
+def is_whole(table):
+    return sorted((r[2], r[4]) for r in table[1:]) == whole
+assert int(sys.argv[1]) >= 20
+for i in range(int(sys.argv[1]) + 1):
+    first, last = rows(f"after/{i}"), rows(f"again/{i}")
+    assert first[:3] == [header] + kept, f"{i}: a row is lost"
+    assert open(f"after/{i}.status").read().strip() == "1" or is_whole(first), f"{i}: rows are missing without an error"
+    assert all(last.count(r) == 1 for r in kept), f"{i}: a row is lost or doubled later"
+    assert is_whole(last) and all(len(r) == len(header) for r in last), f"{i}: rows are not whole"
+PY
+[ ! -s why ]; result $? "rows of an experiment: $calls calls" "$(tail -n 1 why)"
 finish
