@@ -7,6 +7,7 @@
 #define FARTHEST 1e6 /* m; polygons have cells whose numbers are of 32 bits */
 
 enum { RECT_RAYS = 16384 }; /* of a rectangle at most; each stands for some pixels then */
+enum { PANES = 64 };        /* that a pixel is seen through */
 
 noc_status ask_to_local(const asked *a, double xyz[3]) {
     noc_scene_info info;
@@ -33,8 +34,8 @@ static bool unit(double n[3]) {
     return usable;
 }
 
-static noc_status add(const asked *a, const noc_hit *hit, const noc_ray *ray, const noc_ray *next) {
-    noc_patch p = noc_hit_patch(hit, 1, ray, next);
+static noc_status add(const asked *a, const noc_hit *hit, double weight, const noc_ray *ray, const noc_ray *next) {
+    noc_patch p = noc_hit_patch(hit, weight, ray, next);
     return noc_region_add(a->to, &p, 1);
 }
 
@@ -47,7 +48,7 @@ static noc_status add_under(const asked *a, const double at[3], double reach) {
     noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
     if (status != NOC_OK)
         return status;
-    return hit.hit ? add(a, &hit, NULL, NULL)
+    return hit.hit ? add(a, &hit, 1, NULL, NULL)
                    : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no surface at point:%.60s", a->text);
 }
 
@@ -71,7 +72,7 @@ static noc_status add_point(const asked *a) {
         return status;
     if (placed) {
         noc_hit meter = { .place = { n[0], n[1], n[2] }, .normal = { n[3], n[4], n[5] }, .material = -1 };
-        return unit(meter.normal) ? add(a, &meter, NULL, NULL)
+        return unit(meter.normal) ? add(a, &meter, 1, NULL, NULL)
                                   : noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s faces nowhere", a->text);
     }
     noc_scene_info info;
@@ -109,7 +110,14 @@ static noc_status check_picture(const asked *a, const double *at, size_t count) 
     return NOC_OK;
 }
 
-/* The surface that is seen there; nothing is added where there is none. */
+/* The share of light that goes straight through the surface. */
+static double through(const asked *a, const noc_hit *hit) {
+    noc_material m;
+    return noc_scene_get_material(a->scene, hit->material, &m, NULL) == NOC_OK ? m.transmittance : 0;
+}
+
+/* The surface that is seen there; nothing is added where there is none. Through surfaces that let light pass those
+ * behind are seen, too: each has the weight that it has in the picture. */
 static noc_status add_seen(const asked *a, double x, double y) {
     const noc_region_params *p = a->params;
     noc_ray ray, next;
@@ -117,8 +125,23 @@ static noc_status add_seen(const asked *a, double x, double y) {
     if (noc_camera_ray(p->camera, p->width, p->height, (double[2]){ x, y }, &ray) != NOC_OK ||
         noc_camera_ray(p->camera, p->width, p->height, (double[2]){ x, y + 1 }, &next) != NOC_OK)
         return noc_error(a->log, NOC_ERR_ARGUMENT, "region: the camera looks nowhere");
-    noc_status status = noc_view_cast(a->view, &ray, 1, &hit);
-    return status != NOC_OK || !hit.hit ? status : add(a, &hit, &ray, &next);
+    noc_status status = NOC_OK;
+    noc_ray on = ray; /* from the last pane */
+    double length = hypot(hypot(ray.direction[0], ray.direction[1]), ray.direction[2]), way = 0, passes = 1;
+    for (int n = 0; n < PANES && passes > 0 && !status; n++) {
+        status = noc_view_cast(a->view, &on, 1, &hit);
+        if (status || !hit.hit)
+            break;
+        double seen = n + 1 < PANES ? passes * (1 - through(a, &hit)) : passes, step = hit.distance + 1e-4;
+        passes -= seen;
+        hit.distance += way;
+        way += step;
+        for (int k = 0; k < 3; k++)
+            on.origin[k] += ray.direction[k] / length * step;
+        if (seen > 0)
+            status = add(a, &hit, seen, &ray, &next);
+    }
+    return status;
 }
 
 static noc_status check_seen(const asked *a) {

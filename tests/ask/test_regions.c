@@ -38,7 +38,8 @@ static void named_quad(noc_scene *s, int material, const char *name, const doubl
 #define Q(name, m, px, py, pz, ax, ay, az, bx, by, bz)                                                                 \
     named_quad(s, m, name, (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
 
-/* Terrain, a road of 6 m along x with a car on it, a house with a wall towards it and a roof, and a street's name. */
+/* Terrain, a road of 6 m along x with a car on it, a house with a wall towards it and a roof, a pane of glass over the
+ * terrain, and a street's name. */
 static noc_scene *town(noc_log *log) {
     noc_scene *s = noc_scene_create(log);
     int terrain = of_class(s, NOC_CLASS_TERRAIN), road = of_class(s, NOC_CLASS_ROAD),
@@ -48,6 +49,9 @@ static noc_scene *town(noc_log *log) {
     Q("house 7", wall, -5, 6, 0, 10, 0, 0, 0, 0, 4);
     Q("house 7", roof, -5, 6, 4, 10, 0, 0, 0, 8, 0);
     Q("car", car, 0, -1, 1, 4, 0, 0, 0, 2, 0);
+    int glass = noc_scene_add_material(s, &(noc_material){
+                                              .albedo = { 0.5f, 0.5f, 0.5f }, .roughness = 1, .transmittance = 0.7f });
+    Q("pane", glass, -6, -6, 2, 2, 0, 0, 0, 2, 0);
     point_light(s, 0, 0, 6, 100);
     const double line[] = { -40, 0, NAN, 40, 0, NAN };
     assert_true(noc_scene_add_street(s, &(noc_scene_street){ "Main Street", "way/1", 6, 0, 0 }, line, 2));
@@ -103,6 +107,10 @@ static void places_face_as_they_are_said(void **state) {
     noc_region_destroy(r);
     r = find(w, "pixel:50,50", &i);
     assert_true(i.point && fabs(i.centre[0]) < 0.2 && fabs(i.centre[1]) < 0.2 && i.centre[2] < 1.001);
+    noc_region_destroy(r);
+    r = find(w, "pixel:12,87", &i); /* the pane and what is seen through it, as much as each is in the picture */
+    assert_true(i.patches == 2 && fabs(r->patches.data[0].weight - 0.3) < 1e-6 && r->patches.data[0].p[2] == 2);
+    assert_true(fabs(r->patches.data[1].weight - 0.7) < 1e-6 && r->patches.data[1].p[2] == 0);
     noc_region_destroy(r);
     r = find(w, "rect:10,10,59,19", &i);
     assert_int_equal(i.patches, 500);
