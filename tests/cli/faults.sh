@@ -1,7 +1,8 @@
 #!/bin/sh
-# Each opening, reading, writing, flushing and renaming of an input or output fails, in turn, in whichever process of the program
-# it is, and of an input what is done to it from then on (fail_call.c). The program then ends with an error, leaves what
-# stood in the output's place, and nothing else; or its output has the same numbers; or a warning names the file.
+# Each opening, reading, writing, flushing and renaming of an input or output fails, in turn, in whichever process of
+# the program it is, and of an input what is done to it from then on (fail_call.c). The program then ends with an error,
+# leaves what stood in the output's place, and nothing else; or its output has the same numbers; or a warning names the
+# file.
 . "$(dirname "$0")/lib.sh"
 here=$source_dir/tests/cli
 fail_call=${NOC_FAIL_CALL:?names fail_call}
