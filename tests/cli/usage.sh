@@ -139,6 +139,8 @@ done
 if [ -e /dev/full ]; then
     "$program" help render >/dev/full 2>err
     test $? = 1 && grep -q 'standard output' err; result $? "a full disk under stdout is a failure"
+    "$program" render --help >/dev/full 2>err
+    test $? = 1 && grep -q 'standard output' err; result $? "so it is under --help"
 fi
 # ---- limits of the process ----
 # stacked LIMIT ARGUMENT...: by a soft limit (-S) or one that cannot be raised (-SH); dash knows no -s of a soft limit

@@ -248,6 +248,7 @@ static void test_yes_and_no(void **state) {
         { "InService", "Y N", NULL, true, 1, 0, 1 },
         { "IS_ACTIVE", "1 0 -", NULL, true, 2, 0, 1 },
         { "RETIRED", "N Y - 2015-03-01", NULL, true, 2, 0, 2 },
+        { "Inactive", "N Y - 1", NULL, true, 2, 0, 2 },
         { "ISLAND", "Yes No", NULL, true, 2, 0, 0 },
     };
     for (size_t i = 0; i < NOC_COUNT(rows); i++) {

@@ -294,6 +294,20 @@ static void test_street_turned(void **state) {
         }
 }
 
+/* EULUMDAT's intensities are cd/klm times the conversion factor (line 24). */
+static void test_conversion_factor(void **state) {
+    static made m;
+    m.len = 0;
+    put_eulumdat(&m, QUARTERS, 2000, 100);
+    char *factor = strstr(m.text, "\n1\n0\n1\n1\nLED\n");
+    assert_non_null(factor);
+    factor[1] = '3';
+    noc_profile *p = read_made(&m);
+    for (int i = 0; i < 90; i += 15)
+        assert_true(fabs(noc_profile_intensity(p, 2 * i, i) / made_cd(QUARTERS, 2 * i, i) - 3) < 1e-6);
+    noc_profile_destroy(p);
+}
+
 /* A negative number of lamps: candela, or cd/klm, whichever makes the flux that is stated, or nearly so. */
 static void test_absolute_eulumdat(void **state) {
     static made m;
@@ -556,6 +570,7 @@ int main(void) {
         cmocka_unit_test(test_editions),
         cmocka_unit_test(test_headers),
         cmocka_unit_test(test_factors),
+        cmocka_unit_test(test_conversion_factor),
         cmocka_unit_test(test_absolute_eulumdat),
         cmocka_unit_test(test_colours),
         cmocka_unit_test(test_types),
