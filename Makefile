@@ -110,4 +110,4 @@ install: deps build/build.ninja
 	@grep -E '/($(INSTALLED))$$' build/meson-logs/install-log.txt | sed 's/^/  /'
 
 clean:
-	rm -rf build build-asan build-tsan build-coverage build-fuzz build-arm64 night.png
+	rm -rf build build-asan build-tsan build-coverage build-fuzz build-arm64 build-mutants night.png
