@@ -422,6 +422,21 @@ static void test_arcgis(void **state) {
     expect_answer(text, "ArcGIS JSON", "EPSG:4326", -75, 40, "a part of its features (exceededTransferLimit)");
     snprintf(text, sizeof(text), ARCGIS, "\"wkt\": \"+proj=merc +nadgrids=/dev/zero\"", "{\"x\": -75, \"y\": 40}", "");
     expect_answer(text, NULL, NULL, 0, 0, "may open files");
+
+    /* what a probe sees may be fields alone, or look like GeoJSON */
+    char *fields = malloc(40000), *end = fields;
+    end += sprintf(end, "{\"fields\": [{\"name\": \"coordinates\", \"type\": \"esriFieldTypeString\", \"domain\": "
+                        "{\"name\": \"Feature\", \"codedValues\": [");
+    for (int i = 0; i < 1000; i++)
+        end += sprintf(end, "%s{\"code\": %d, \"name\": \"v\"}", i ? "," : "", i);
+    sprintf(
+        end,
+        "]}}, {\"name\": \"lamp_type\", \"type\": \"esriFieldTypeString\"}, {\"name\": \"lamp_wattage\", "
+        "\"type\": \"esriFieldTypeDouble\"}], \"geometryType\": \"esriGeometryPoint\", \"spatialReference\": {\"wkid\": 2263}, \"features\": ["
+        "{\"attributes\": {\"coordinates\": \"Feature\", \"lamp_type\": \"LED\", \"lamp_wattage\": 60}, "
+        "\"geometry\": {\"x\": 1000000, \"y\": 200000}}]}");
+    expect_answer(fields, "ArcGIS JSON", "EPSG:2263", 1000000, 200000, "");
+    free(fields);
 }
 
 #endif

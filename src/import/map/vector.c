@@ -8,7 +8,6 @@
 #include "import/map/osm_ways.h"
 #include "import/map/outlines.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -22,24 +21,30 @@ static bool probe_osm_xml(const char *head, size_t size) {
 
 static bool probe_pbf(const char *head, size_t size) { return has(head, NOC_MIN(size, 64), "OSMHeader"); }
 
-static bool probe_geojson(const char *head, size_t size) {
-    const char *p = head, *end = head + size;
-    if (size >= 3 && !memcmp(p, "\xef\xbb\xbf", 3))
+/* Moves past what may stand before the first brace. false: there is none. */
+static bool skip_to_brace(const char **head, size_t *size) {
+    const char *p = *head, *end = p + *size;
+    if (*size >= 3 && !memcmp(p, "\xef\xbb\xbf", 3))
         p += 3;
     while (p < end && (*p == ' ' || *p == '\n' || *p == '\r' || *p == '\t' || *p == '\x1e'))
         p++;
-    if (p == end || *p != '{')
+    *head = p;
+    *size = (size_t)(end - p);
+    return p < end && *p == '{';
+}
+
+/* What ArcGIS servers answer to f=json. Fields, which come before the features, may be all that is in sight. */
+static bool probe_arcgis(const char *p, size_t size) {
+    return skip_to_brace(&p, &size) && !has(p, size, "\"FeatureCollection\"") &&
+           (has(p, size, "\"esriGeometry") || has(p, size, "\"esriFieldType"));
+}
+
+static bool probe_geojson(const char *p, size_t size) {
+    if (!skip_to_brace(&p, &size) || probe_arcgis(p, size))
         return false;
-    size = (size_t)(end - p);
     /* not CityJSON, which is told by its own reader or by none */
     return !has(p, size, "\"CityJSON") && (has(p, size, "\"FeatureCollection\"") || has(p, size, "\"Feature\"") ||
                                            (has(p, size, "\"coordinates\"") && has(p, size, "\"geometry\"")));
-}
-
-/* What ArcGIS servers answer to f=json. */
-static bool probe_arcgis(const char *head, size_t size) {
-    return size && (*head == '{' || isspace((unsigned char)*head)) && has(head, size, "\"features\"") &&
-           (has(head, size, "\"esriGeometry") || has(head, size, "\"esriFieldType"));
 }
 
 static bool probe_gml(const char *head, size_t size) {
