@@ -164,7 +164,11 @@ static void test_transparency(void **state) {
     static const struct {
         const char *material;
         float transmittance;
+        bool clamped;
     } rows[] = {
+        { "\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, -1]}", 1, true },
+        { "\"alphaMode\": \"MASK\", \"alphaCutoff\": 2", 0, true },
+        { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 7]}", 0 },
         { "\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0.75f },
         { "\"alphaMode\": \"OPAQUE\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
         { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
@@ -191,6 +195,7 @@ static void test_transparency(void **state) {
         assert_float_equal(l.scene->materials.data[0].transmittance, rows[i].transmittance, 1e-6);
         assert_false(l.scene->materials.data[0].cutout);
         assert_int_equal(skipped_count(&l, "alpha mode that is not known"), strstr(rows[i].material, "7,") != NULL);
+        assert_int_equal(skipped_count(&l, "out of range, clamped"), rows[i].clamped);
         assert_int_equal(skipped_count(&l, "transparent material that emits"), i + 1 == NOC_COUNT(rows));
         unload(&l);
         free(text);

@@ -13,6 +13,8 @@
 
 static double limited(double x, double lo, double hi) { return x >= lo ? NOC_MIN(x, hi) : lo; } /* NaN becomes lo */
 
+static bool in_share(double x) { return x >= 0 && x <= 1; }
+
 static void no_textures(const gltf *g, const json_t *pbr, const json_t *m, const char *name, noc_material *out) {
     if (json_object_get(pbr, "metallicRoughnessTexture") || json_object_get(m, "emissiveTexture"))
         geo_issue(g->issues, GEO_GUESSED, "texture of roughness, metalness or emission, which is not read", name);
@@ -32,10 +34,13 @@ static void let_through(const gltf *g, const json_t *m, const double base[4], do
     const char *mode = json_string_value(said);
     const json_t *glass = gltf_extension(m, "KHR_materials_transmission");
     bool blend = mode && !strcmp(mode, "BLEND"), mask = mode && !strcmp(mode, "MASK");
-    double alpha = limited(base[3], 0, 1), least = mask ? limited(gltf_number(m, "alphaCutoff", 0.5), 0, 1) : 0.5;
-    double clear = limited(gltf_number(glass, "transmissionFactor", 0), 0, 1);
+    double said_least = mask ? gltf_number(m, "alphaCutoff", 0.5) : 0.5;
+    double said_clear = gltf_number(glass, "transmissionFactor", 0);
+    double alpha = limited(base[3], 0, 1), least = limited(said_least, 0, 1), clear = limited(said_clear, 0, 1);
     double through = clear * luminance * (1 - out->f0);
     *cutoff = 0;
+    if (!in_share(said_least) || !in_share(said_clear) || ((blend || mask) && !in_share(base[3])))
+        geo_issue(g->issues, GEO_GUESSED, "material values out of range, clamped", name);
     if (said && !blend && !mask && !(mode && !strcmp(mode, "OPAQUE")))
         geo_issue(g->issues, GEO_GUESSED, "alpha mode that is not known, taken as opaque", name);
     if (json_object_get(glass, "transmissionTexture"))

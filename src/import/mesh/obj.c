@@ -213,9 +213,9 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
     if (most + out.f0 > 1)
         for (int i = 0; i < 3; i++)
             out.albedo[i] *= (1 - out.f0) / most;
-    if (changed)
-        geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", name);
     bool clear = get_float(m, "$mat.opacity", &opacity) && opacity < 1;
+    if (changed || !(opacity >= 0 && opacity <= 1))
+        geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", name);
     if (clear && noc_material_shines(&out))
         geo_issue(issues, GEO_GUESSED, "transparent material that emits, taken as opaque", name);
     else if (clear)
