@@ -185,8 +185,11 @@ static noc_status ask_region(influence_job *job) {
     status = status ? status : noc_ranking_get(ranking, job->rows, (size_t)args->top, &job->count, &job->sum);
     if (!status && has_area(job->asked))
         status = noc_ranking_get_classes(ranking, job->classes, NOC_CLASS_COUNT, &job->class_count);
-    if (!status && !influence_csv_alone(args))
+    if (!status && !influence_csv_alone(args)) {
+        fputs(job->lead, stdout);
+        job->lead = args->json ? ",\n" : "\n";
         status = influence_print(job);
+    }
     if (!status && args->csv) { /* of all that was found */
         free(job->rows);
         job->rows = cli_alloc((job->sum.emitters + 1) * sizeof(*job->rows));
@@ -197,14 +200,13 @@ static noc_status ask_region(influence_job *job) {
     return status;
 }
 
-/* One after the other; several in JSON are an array. */
+/* One after the other; several in JSON are an array, of those before the first one that cannot be answered. */
 static noc_status ask(influence_job *job) {
     const influence_args *args = job->args;
     bool array = args->json && args->regions.count > 1;
     noc_status status = NOC_OK;
+    job->lead = array ? "[\n" : "";
     for (size_t i = 0; i < args->regions.count && !status; i++) {
-        if (array || i)
-            fputs(!array ? "\n" : i ? ",\n" : "[\n", stdout);
         job->asked = args->regions.text[i];
         job->class_count = 0;
         status = ask_region(job);
@@ -213,7 +215,7 @@ static noc_status ask(influence_job *job) {
         noc_region_destroy(job->region);
         job->region = NULL;
     }
-    if (array && !status)
+    if (array && *job->lead == ',')
         puts("]");
     return status;
 }

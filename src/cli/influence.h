@@ -24,6 +24,7 @@ typedef struct influence_job {
     noc_device *device;
     noc_view *view;
     noc_camera camera;
+    const char *lead;  /* printed before the next answer */
     const char *asked; /* the region that is answered now, and what is found of it */
     noc_region *region;
     noc_region_info region_info;

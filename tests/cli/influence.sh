@@ -168,6 +168,13 @@ with open('out') as f:
 assert [r['region'][:6] for r in j] == ['point:', 'street'] and all(r['lux'] > 0 for r in j), j
 "
 result $? "two regions in JSON are an array"
+run influence map.osm --map-surfaces -q --json --region point:13.4003,52.50000,EPSG:4326 --region object:none
+[ $status = 1 ] && python3 -c "
+import json
+with open('out') as f:
+    assert len(json.load(f)) == 1
+"
+result $? "of those before one that cannot be answered"
 expect "a table of two regions" 2 'csv is for one --region' influence map.osm --csv x.csv \
     --region point:0,0 --region point:1,1
 
