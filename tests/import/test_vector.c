@@ -429,12 +429,11 @@ static void test_arcgis(void **state) {
                         "{\"name\": \"Feature\", \"codedValues\": [");
     for (int i = 0; i < 1000; i++)
         end += sprintf(end, "%s{\"code\": %d, \"name\": \"v\"}", i ? "," : "", i);
-    sprintf(
-        end,
-        "]}}, {\"name\": \"lamp_type\", \"type\": \"esriFieldTypeString\"}, {\"name\": \"lamp_wattage\", "
-        "\"type\": \"esriFieldTypeDouble\"}], \"geometryType\": \"esriGeometryPoint\", \"spatialReference\": {\"wkid\": 2263}, \"features\": ["
-        "{\"attributes\": {\"coordinates\": \"Feature\", \"lamp_type\": \"LED\", \"lamp_wattage\": 60}, "
-        "\"geometry\": {\"x\": 1000000, \"y\": 200000}}]}");
+    sprintf(end, "]}}, {\"name\": \"lamp_type\", \"type\": \"esriFieldTypeString\"}, {\"name\": \"lamp_wattage\", "
+                 "\"type\": \"esriFieldTypeDouble\"}], \"geometryType\": \"esriGeometryPoint\", "
+                 "\"spatialReference\": {\"wkid\": 2263}, \"features\": ["
+                 "{\"attributes\": {\"coordinates\": \"Feature\", \"lamp_type\": \"LED\", \"lamp_wattage\": 60}, "
+                 "\"geometry\": {\"x\": 1000000, \"y\": 200000}}]}");
     expect_answer(fields, "ArcGIS JSON", "EPSG:2263", 1000000, 200000, "");
     free(fields);
 }
