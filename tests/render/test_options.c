@@ -387,7 +387,7 @@ static void skies_have_words(void **state) {
         assert_true(fabs(noc_sky_luminance(good[i].sqm) - render.sky) < 1e-6 * render.sky);
     }
     for (int class = 9; class >= 1; class --) {
-        char text[16];
+        char text[32];
         snprintf(text, sizeof(text), "bortle:%d", class);
         assert_int_equal(noc_option_set(o, &render, text, NULL), NOC_OK);
         assert_true(render.sky < before);
