@@ -2,11 +2,12 @@
 #include "viewer/wire.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Codes of RFC 6455, 7.4.1 */
-enum { NO_TEXT = 1003, POLICY = 1008, TOO_BIG = 1009, NO_MEMORY = 1011 };
+enum { NO_TEXT = 1003, POLICY = 1008, TOO_BIG = 1009 };
 
 struct client {
     struct lws *socket;
@@ -15,13 +16,14 @@ struct client {
     double messages, bytes; /* that it may send now */
     double counted;         /* when those were counted */
     double spoke;           /* when the last one came */
-    bool begun, replaced;
+    bool begun;
     uint64_t heard; /* bytes of the connection that were counted */
     double room;    /* bytes of it that may come */
     double since;   /* when that was counted; 0: never */
     double asked;   /* since when something waits for it to read; 0: nothing does */
-    char why[128];
-    size_t size; /* of the message so far */
+    int closing;    /* the code that it is to be closed with; 0: it stays */
+    char why[124];  /* as much as a close frame holds */
+    size_t size;    /* of the message so far */
     char text[WIRE_TEXT];
 };
 
@@ -51,8 +53,18 @@ void client_leave(client *c) {
     session_end(c->session);
 }
 
-void client_replace(client *c) { c->replaced = true; }
-bool client_replaced(const client *c) { return c->replaced; }
+void client_close(client *c, int code, const char *why) {
+    if (c->closing)
+        return;
+    c->closing = code;
+    snprintf(c->why, sizeof(c->why), "%s", why);
+}
+
+int client_closing(const client *c, const char **why) {
+    if (why)
+        *why = c->why;
+    return c->closing;
+}
 
 struct lws *client_socket(const client *c) {
     return c->socket;
@@ -70,35 +82,39 @@ bool client_counts(client *c, size_t size, double now) {
     c->bytes = c->bytes < CLIENT_AT_ONCE * CLIENT_BYTES ? c->bytes : CLIENT_AT_ONCE * CLIENT_BYTES;
     c->messages -= 1;
     c->bytes -= (double)size;
-    return c->messages >= 0 && c->bytes >= 0;
+    if (c->messages >= 0 && c->bytes >= 0)
+        return true;
+    client_close(c, POLICY, "too many messages, or bytes, in a second");
+    return false;
 }
 
-static int take(client *c, const char **why) {
+static void take(client *c) {
     wire_message message;
-    bool read = wire_read(c->text, c->size, &message, c->why, sizeof(c->why));
+    char why[sizeof(c->why)];
+    bool read = wire_read(c->text, c->size, &message, why, sizeof(why));
     c->size = 0;
-    if (!read) {
-        *why = c->why;
-        return POLICY;
-    }
-    *why = "more messages wait than may";
-    return session_take(c->session, &message) ? 0 : POLICY;
+    if (!read)
+        client_close(c, POLICY, why);
+    else if (!session_take(c->session, &message))
+        client_close(c, POLICY, "more messages wait than may");
 }
 
-int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why) {
+void client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now) {
     c->spoke = now;
-    *why = "too many messages, or bytes, in a second";
-    if (!client_counts(c, size, now)) /* pieces count, so that empty ones are no way around it */
-        return POLICY;
-    *why = "a binary message";
-    if (binary)
-        return NO_TEXT;
-    *why = "the message is too long";
-    if (size > sizeof(c->text) - c->size)
-        return TOO_BIG;
+    if (c->closing || !client_counts(c, size, now)) /* pieces count, so that empty ones are no way around it */
+        return;
+    if (binary) {
+        client_close(c, NO_TEXT, "a binary message");
+        return;
+    }
+    if (size > sizeof(c->text) - c->size) {
+        client_close(c, TOO_BIG, "the message is too long");
+        return;
+    }
     memcpy(c->text + c->size, data, size);
     c->size += size;
-    return last ? take(c, why) : 0;
+    if (last)
+        take(c);
 }
 
 double client_spoke(const client *c) { return c->spoke; }

@@ -25,22 +25,23 @@ client *client_create(struct lws *socket, double now, const session_setup *setup
 void client_destroy(client *c);
 /* The connection is gone: asks the session to end, and does not wait. */
 void client_leave(client *c);
-/* Another has its place: it is to be closed with CLIENT_REPLACED. */
-void client_replace(client *c);
-bool client_replaced(const client *c);
+/* The connection is to be closed with that code of RFC 6455, or CLIENT_REPLACED: another has its place. The first code
+ * stays. why is copied. */
+void client_close(client *c, int code, const char *why);
+int client_closing(const client *c, const char **why); /* that code, 0 while it stays; why may be NULL */
 
 struct lws *client_socket(const client *c); /* NULL once it has left */
 session *client_session(const client *c);
 outbox *client_outbox(const client *c);
 
-/* A piece of a message; last: it is its end. 0, or the code of RFC 6455 with which the connection is to be closed, and
- * why. */
-int client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now, const char **why);
+/* A piece of a message; last: it is its end. What may not be sent closes the connection. */
+void client_receive(client *c, const void *data, size_t size, bool binary, bool last, double now);
 
 /* When its last message came, or it did: pongs and pings are none. */
 double client_spoke(const client *c);
 
-/* A piece of a message, or what else counts as one, has come. false: more than may. */
+/* A piece of a message, or what else counts as one, has come. false: more than may, and the connection is to be
+ * closed. */
 bool client_counts(client *c, size_t size, double now);
 /* So many bytes have come over its connection in all: those of pings and of heads of frames, too. false: more than may,
  * and it is to be closed. */

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #define LARGE (1 << 20) /* bytes: buffers of pictures */
+#define CLOSE_S 2       /* s that a connection which is to be closed has to read what was sent */
 #define LOOK_US 100000  /* how often it looks whether it is to end, and after clients */
 
 #define TEXT_OF(x) #x
@@ -73,24 +74,30 @@ static client *enter(server *s, struct lws *socket) {
     return s->clients[i];
 }
 
-/* Where all places are taken: closes the client that was idle longest, and its place is free at once. One that does not
- * read is not waited for. */
+/* Closes a connection with the code of its client once what lws holds for it is sent: closed at once, with -1 from a
+ * callback, it would end without a close frame where a message is still on its way. One that does not read is not
+ * waited for. */
+static void close_soon(struct lws *socket) {
+    lws_callback_on_writable(socket);
+    lws_set_timeout(socket, PENDING_TIMEOUT_USER_OK, CLOSE_S);
+}
+
+/* Where all places are taken: closes the client that was idle longest, and its place is free at once. */
 static void make_room(server *s) {
     client *idle = NULL;
     double before = serve_now() - CLIENT_IDLE;
     for (int i = 0; s->connected == s->params->clients && i < 2 * SERVE_CLIENTS; i++) {
         client *c = s->clients[i];
-        if (c && client_socket(c) && !client_replaced(c) && client_spoke(c) < before) {
+        if (c && client_socket(c) && !client_closing(c, NULL) && client_spoke(c) < before) {
             before = client_spoke(c);
             idle = c;
         }
     }
     if (!idle)
         return;
-    client_replace(idle);
+    client_close(idle, CLIENT_REPLACED, "another has this place: nothing was done here for a while");
     s->connected--;
-    lws_callback_on_writable(client_socket(idle));
-    lws_set_timeout(client_socket(idle), PENDING_TIMEOUT_USER_OK, 2);
+    close_soon(client_socket(idle));
 }
 
 /* Bytes that came over a connection. */
@@ -117,7 +124,7 @@ static void attend(server *s) {
     collect(s);
 }
 
-/* Closes it with that code and reason: what a callback returns then. */
+/* Sends that code and reason as a close frame, and closes: what the callback of a writable connection returns then. */
 static int close_with(struct lws *socket, int code, const char *why) {
     unsigned char text[124];
     int n = snprintf((char *)text, sizeof(text), "%s", why);
@@ -127,8 +134,10 @@ static int close_with(struct lws *socket, int code, const char *why) {
 
 static int send_next(struct lws *socket, client *c) {
     outbox_message message;
-    if (client_replaced(c))
-        return close_with(socket, CLIENT_REPLACED, "another has this place: nothing was done here for a while");
+    const char *why;
+    int code = client_closing(c, &why);
+    if (code)
+        return close_with(socket, code, why);
     if (!outbox_take(client_outbox(c), serve_now(), &message))
         return 0;
     int sent =
@@ -141,14 +150,21 @@ static int send_next(struct lws *socket, client *c) {
 }
 
 static int receive(struct lws *socket, client *c, const void *in, size_t size) {
-    const char *why;
+    bool closing = client_closing(c, NULL);
     bool last = lws_is_final_fragment(socket) && !lws_remaining_packet_payload(socket);
-    int code = client_receive(c, in, size, lws_frame_is_binary(socket), last, serve_now(), &why);
-    return code ? close_with(socket, code, why) : 0;
+    client_receive(c, in, size, lws_frame_is_binary(socket), last, serve_now());
+    if (!closing && client_closing(c, NULL))
+        close_soon(socket);
+    return 0;
 }
 
 /* One that was asked for or not: it counts as a message. */
-static int receive_pong(client *c, size_t size) { return client_counts(c, size, serve_now()) ? 0 : -1; }
+static int receive_pong(struct lws *socket, client *c, size_t size) {
+    bool closing = client_closing(c, NULL);
+    if (!client_counts(c, size, serve_now()) && !closing)
+        close_soon(socket);
+    return 0;
+}
 
 /* ---- what libwebsockets tells ---- */
 
@@ -217,12 +233,12 @@ static int callback(struct lws *socket, enum lws_callback_reasons reason, void *
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return refuse_upgrade(s, socket, in);
     case LWS_CALLBACK_ESTABLISHED: forget_waiting(s, socket); return (c->client = enter(s, socket)) ? 0 : -1;
     case LWS_CALLBACK_RECEIVE: return c->client ? receive(socket, c->client, in, size) : -1;
-    case LWS_CALLBACK_RECEIVE_PONG: return c->client ? receive_pong(c->client, size) : -1;
+    case LWS_CALLBACK_RECEIVE_PONG: return c->client ? receive_pong(socket, c->client, size) : -1;
     case LWS_CALLBACK_SERVER_WRITEABLE: return c->client ? send_next(socket, c->client) : -1;
     case LWS_CALLBACK_CLOSED:
         if (c->client) {
             client_leave(c->client);
-            s->connected -= !client_replaced(c->client);
+            s->connected -= client_closing(c->client, NULL) != CLIENT_REPLACED;
         }
         c->client = NULL;
         return 0;

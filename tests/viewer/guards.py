@@ -223,6 +223,8 @@ def test_broken_messages_close_that_client(p):
                        (b'{"t":"watch","on":true,"x":"' + b"a" * 40000 + b'"}', 1009),
                        (b'{"t":"watch","on":true,"x":"\xff"}', 1007), (b"\xed\xa0\x80", 1007), (b"\xc0\x80", 1007)):
         c = joined(p)
+        if code == 1007: # libwebsockets closes by itself, and without a code where a message is still on its way
+            c.text_of("welcome")
         c.text(text)
         got = c.closed()
         assert got == code or (got is None and len(text) > 4096), (text[:60], got) # what is unread resets it
