@@ -3,25 +3,9 @@
  * may be in flight; figures are those of the last finished one. */
 #include "backend/vulkan/influence_memory.h"
 #include "backend/vulkan/list_memory.h"
-#include "backend/vulkan/schedule.h"
 #include "backend/vulkan/vulkan.h"
-#include "core/learned.h"
-
-enum { GROUP = 64 }; /* invocations of a work group over pixels: four blocks in a row */
 
 /* ---- flights ---- */
-
-static void take_times(vk_view *v, vk_flight *f) {
-    uint64_t times[VK_STEPS + 1];
-    if (!f->times_count ||
-        vkGetQueryPoolResults(v->device->device, f->times, 0, (uint32_t)f->times_count + 1, sizeof(times), times,
-                              sizeof(*times), VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
-        return;
-    for (int i = 0; i < f->times_count; i++)
-        if (f->timed[i] < NOC_PASS_COUNT)
-            f->found.pass_seconds[f->timed[i]] +=
-                (double)((times[i + 1] - times[i]) & v->device->tick_mask) * v->device->tick;
-}
 
 static void take_counts(vk_view *v, vk_flight *f) {
     const uint32_t(*counts)[VK_COUNTERS] = f->counts.mapped;
@@ -56,7 +40,7 @@ static noc_status finish(vk_view *v, vk_flight *f) {
     VkResult result = vkWaitForFences(v->device->device, 1, &f->fence, VK_TRUE, UINT64_MAX);
     if (result != VK_SUCCESS)
         return noc_vk_failed(v->device, result, "rendering");
-    take_times(v, f);
+    noc_vk_note_frame(v, noc_vk_take_times(v, f));
     take_counts(v, f);
     return NOC_OK;
 }
@@ -70,7 +54,7 @@ noc_status noc_vk_finish_flights(vk_view *v) {
     return status;
 }
 
-/* ---- recording ---- */
+/* ---- what steps read ---- */
 
 /* Levels of the deeper hierarchy of clusters. */
 static int cluster_levels(const noc_light_sources *s) {
@@ -190,155 +174,6 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
     };
 }
 
-static void mark_time(vk_view *v, noc_pass pass) {
-    vk_flight *f = &v->flights[v->flight];
-    if (!v->device->tick_mask || f->times_count >= VK_STEPS)
-        return;
-    f->timed[f->times_count++] = pass;
-    vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, (uint32_t)f->times_count);
-}
-
-/* So many invocations, in a plane of work groups: a row has room for 65,535 of these at least. */
-static void dispatch_many(VkCommandBuffer commands, uint32_t invocations) {
-    uint32_t groups = (invocations + GROUP - 1) / GROUP, wide = NOC_MIN(groups, 1024u);
-    vkCmdDispatch(commands, wide, (groups + wide - 1) / wide, 1);
-}
-
-static void dispatch(vk_view *v, const vk_step *step, const vk_pipeline *p) {
-    const vk_picture *b = &v->b;
-    uint32_t rows = step->rows ? step->rows : b->blocks_y;
-    VkCommandBuffer commands = v->flights[v->flight].commands;
-    static const VkStridedDeviceAddressRegionKHR none = { 0 };
-    switch (step->domain) {
-    case VK_DOMAIN_PIXELS: vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, 1); break;
-    case VK_DOMAIN_LAYERS:
-        vkCmdDispatch(commands, (b->blocks_x * BLOCK + GROUP - 1) / GROUP, rows, (uint32_t)step->slots);
-        break;
-    case VK_DOMAIN_TILES: vkCmdDispatch(commands, noc_vk_tiles(b->blocks_x), noc_vk_tiles(rows), 1); break;
-    case VK_DOMAIN_BLOCKS: {
-        uint32_t blocks = v->device->constants.share_workers / BLOCK;
-        vkCmdDispatch(commands, (b->blocks_x + blocks - 1) / blocks, rows, 1);
-        break;
-    }
-    case VK_DOMAIN_ROWS: dispatch_many(commands, v->learning.rows); break;
-    case VK_DOMAIN_RUNS: dispatch_many(commands, v->learning.cells / CELL_RUN * 16); break;
-    case VK_DOMAIN_ONE: vkCmdDispatch(commands, 1, 1, 1); break;
-    case VK_DOMAIN_SUBSETS: vkCmdDispatch(commands, v->subsets, 1, 1); break;
-    case VK_DOMAIN_RAYS:
-        vkCmdTraceRaysKHR(commands, &p->raygen, &p->miss, &p->hit, &none, b->blocks_x * BLOCK, rows,
-                          (uint32_t)step->slots);
-        break;
-    }
-}
-
-/* Records a step over rays that common->rays and common->answers lead to. */
-static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding *common) {
-    vk_flight *f = &v->flights[v->flight];
-    const vk_structure *s = &v->world->structure;
-    const vk_pipeline *p;
-    noc_status status = noc_vk_pipeline(v->device, step->shader, &p);
-    if (status != NOC_OK)
-        return status;
-    VkDeviceSize at = VK_CONSTANTS_BYTES + (VkDeviceSize)f->steps++ * sizeof(vk_binding);
-    vk_binding *b = (vk_binding *)(void *)((char *)f->constants.mapped + at);
-    *b = *common;
-    b->source = v->b.reservoirs[step->source].address;
-    b->target = v->b.reservoirs[step->target].address;
-    b->source_visible = v->b.visible[step->source].address;
-    b->target_visible = v->b.visible[step->target].address;
-    b->dimension = step->dimension;
-    b->first = step->first;
-    bool traces = step->domain == VK_DOMAIN_RAYS;
-    b->first_row = traces && step->band ? 0 : step->first_row;
-    b->rows = step->rows ? step->rows : v->b.blocks_y;
-    b->slots = v->b.blocks_x * (step->band ? step->rows : v->b.blocks_y) * BLOCK;
-    uint32_t tiles = noc_vk_tiles(v->b.blocks_x) * noc_vk_tiles(b->rows);
-    b->pixels_at = tiles * b->tile_words;
-    b->pool_room = NOC_MIN(tiles * FOUND_POOL + FOUND_SPARE, v->device->pool_most);
-    VkPipelineBindPoint point = traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
-    VkDeviceAddress address = f->constants.address + at;
-    if (step->wait)
-        noc_vk_barrier(f->commands);
-    vkCmdBindPipeline(f->commands, point, p->pipeline);
-    if (traces)
-        vkCmdBindDescriptorSets(f->commands, point, v->device->layout, 0, 1,
-                                &s->tlas[step->past ? 1 - s->now : s->now].set, 0, NULL);
-    vkCmdPushConstants(f->commands, v->device->layout, VK_PUSH_STAGES, 0, sizeof(address), &address);
-    dispatch(v, step, p);
-    return NOC_OK;
-}
-
-/* A frame that was dropped may have left them half recorded. */
-static VkResult begin_commands(const vk_flight *f) {
-    VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT };
-    VkResult result = vkResetCommandBuffer(f->commands, 0);
-    return result == VK_SUCCESS ? vkBeginCommandBuffer(f->commands, &info) : result;
-}
-
-/* Submits what is recorded. */
-static VkResult submit_commands(const vk_device *d, const vk_flight *f) {
-    VkSubmitInfo info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                          .commandBufferCount = 1,
-                          .pCommandBuffers = &f->commands };
-    noc_vk_barrier(f->commands);
-    VkResult result = vkEndCommandBuffer(f->commands);
-    if (result == VK_SUCCESS)
-        result = vkResetFences(d->device, 1, &f->fence);
-    return result == VK_SUCCESS ? vkQueueSubmit(d->queue, 1, &info, f->fence) : result;
-}
-
-static void start_times(const vk_device *d, vk_flight *f) {
-    f->times_count = 0;
-    if (!d->tick_mask)
-        return;
-    vkCmdResetQueryPool(f->commands, f->times, 0, VK_STEPS + 1);
-    vkCmdWriteTimestamp(f->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, 0);
-}
-
-/* Runs what is recorded so far, and goes on recording. between: NULL, or a step that the host answers in between. */
-static noc_status run_recorded(vk_view *v, const vk_step *between) {
-    vk_flight *f = &v->flights[v->flight];
-    VkResult result = submit_commands(v->device, f);
-    if (result != VK_SUCCESS)
-        return noc_vk_failed(v->device, result, "rendering");
-    noc_status status = noc_vk_wait_idle(v->device);
-    if (status == NOC_OK)
-        take_times(v, f);
-    if (status == NOC_OK && between)
-        status = v->answerer->answer(v->answerer->user, between);
-    if (status == NOC_OK)
-        status = noc_vk_submit_upload(v->device);
-    if (status != NOC_OK)
-        return status;
-    result = begin_commands(f);
-    f->steps = 0;
-    start_times(v->device, f);
-    return result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
-}
-
-/* Records a step, or has it answered by the host. What a command buffer has no room for goes into the next one. */
-static noc_status take_step(vk_view *v, vk_step *step, const vk_binding *common) {
-    noc_status status = v->flights[v->flight].steps == VK_STEPS ? run_recorded(v, NULL) : NOC_OK;
-    noc_vk_find_wait(&v->hazards, step);
-    if (status == NOC_OK && v->recording && step->domain == VK_DOMAIN_RAYS)
-        status = noc_vk_keep_rays(v, step);
-    if (status != NOC_OK)
-        return status;
-    return v->answerer && step->domain == VK_DOMAIN_RAYS ? run_recorded(v, step) : record_step(v, step, common);
-}
-
-static noc_status record(vk_view *v, const noc_frame *frame, vk_steps *steps) {
-    vk_binding common = common_binding(v, frame);
-    noc_status status = NOC_OK;
-    for (size_t i = 0; i < steps->len && status == NOC_OK; i++) {
-        status = take_step(v, &steps->data[i], &common);
-        if (i + 1 == steps->len || steps->data[i + 1].pass != steps->data[i].pass)
-            mark_time(v, steps->data[i].pass);
-    }
-    return status;
-}
-
 /* ---- a frame ---- */
 
 /* Rows of candidates that are drawn before the frame, from all lights. */
@@ -366,8 +201,8 @@ static noc_status get_sources(vk_view *v, const noc_frame *frame) {
                : noc_light_set_get(v->world->lights_set, frame->plan->candidates, frame->params, &v->sources);
 }
 
-/* Room for the rays of the plan's steps, and for scratch. */
-static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
+/* Room for the rays of the plan's steps, and for scratch. Adds the seconds that they will take to *expected. */
+static noc_status fit_buffers(vk_view *v, const noc_frame *frame, double *expected) {
     vk_facts facts = facts_of(v, frame);
     size_t rays = 0;
     for (int i = 0; i < frame->plan->count; i++) {
@@ -375,6 +210,7 @@ static noc_status fit_buffers(vk_view *v, const noc_frame *frame) {
         if (!noc_vk_schedule(frame->plan, &frame->plan->stages[i], &facts, &v->steps))
             return noc_no_memory(v->log, "render");
         rays = NOC_MAX(rays, noc_vk_ray_room(&v->steps, &facts));
+        *expected += noc_vk_expected_seconds(v, &v->steps);
     }
     noc_status status = noc_vk_view_fit(v, rays, noc_vk_scratch_bytes(frame->plan, &facts));
     return status == NOC_OK && frame->plan->learns ? noc_vk_view_fit_learning(v, &frame->constants) : status;
@@ -395,10 +231,10 @@ static noc_status upload_receivers(vk_view *v, const noc_frame *frame) {
 }
 
 /* What the frame needs of the world and of the view, before anything is recorded. */
-static noc_status prepare(vk_view *v, const noc_frame *frame) {
+static noc_status prepare(vk_view *v, const noc_frame *frame, double *expected) {
     noc_status status = finish(v, &v->flights[v->flight]);
     if (status == NOC_OK)
-        status = noc_vk_world_follow(v->world);
+        status = noc_vk_world_follow(v->world, v->pace.progress);
     if (status == NOC_OK)
         status = noc_vk_view_begin_past(v, frame->plan);
     if (status == NOC_OK)
@@ -409,7 +245,7 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
     if (status == NOC_OK)
         status = noc_vk_world_fill_sources(v->world, &v->sources, v->map_light);
     if (status == NOC_OK)
-        status = fit_buffers(v, frame);
+        status = fit_buffers(v, frame, expected);
     if (status == NOC_OK && frame->receivers)
         status = upload_receivers(v, frame);
     if (status == NOC_OK)
@@ -420,10 +256,14 @@ static noc_status prepare(vk_view *v, const noc_frame *frame) {
 
 static noc_status begin(vk_view *v, const noc_frame *frame) {
     vk_flight *f = &v->flights[v->flight];
-    noc_status status = prepare(v, frame);
+    double expected = 0;
+    noc_status status = prepare(v, frame, &expected);
     if (status != NOC_OK)
         return status;
-    VkResult result = begin_commands(f);
+    noc_vk_begin_pace(v, expected);
+    if (v->pace.on && (status = noc_vk_wait_idle(v->device)) != NOC_OK) /* pieces are timed */
+        return status;
+    VkResult result = noc_vk_begin_commands(f);
     if (result != VK_SUCCESS)
         return noc_vk_failed(v->device, result, "recording a frame");
     memcpy(f->constants.mapped, &frame->constants, sizeof(frame->constants));
@@ -439,7 +279,7 @@ static noc_status begin(vk_view *v, const noc_frame *frame) {
     if (frame->plan->learns)
         noc_vk_begin_learning(v, frame->epoch, f->commands);
     noc_vk_barrier(f->commands);
-    start_times(v->device, f);
+    noc_vk_start_times(v->device, f);
     return NOC_OK;
 }
 
@@ -454,19 +294,21 @@ noc_status noc_vk_stage(void *view, const noc_frame *frame, const noc_stage *sta
                         double from, double to) {
     vk_view *v = view;
     noc_status status = NOC_OK;
-    (void)to;
+    v->pace.progress = progress;
+    v->pace.done = from;
     if (stage == &frame->plan->stages[0]) {
         if ((status = noc_vk_enter(v->device)) != NOC_OK)
             return status;
         v->open = true;
         status = begin(v, frame);
     }
-    if (status == NOC_OK && progress && progress->update && !progress->update(progress->user, "rendering", from))
+    if (status == NOC_OK && !noc_vk_may_go_on(v))
         status = NOC_ERR_CANCELLED;
     if (status == NOC_OK) {
         vk_facts facts = facts_of(v, frame);
+        vk_binding common = common_binding(v, frame);
         v->steps.len = 0;
-        status = noc_vk_schedule(frame->plan, stage, &facts, &v->steps) ? record(v, frame, &v->steps)
+        status = noc_vk_schedule(frame->plan, stage, &facts, &v->steps) ? noc_vk_record_steps(v, &common, from, to)
                                                                         : noc_no_memory(v->log, "render");
     }
     return status == NOC_OK ? status : drop(v, status);
@@ -490,7 +332,7 @@ static noc_status submit(vk_view *v) {
     noc_vk_barrier(f->commands);
     keep_lights(v);
     vkCmdCopyBuffer(f->commands, v->counters.buffer, f->counts.buffer, 1, &copy);
-    VkResult result = submit_commands(d, f);
+    VkResult result = noc_vk_submit_commands(d, f);
     if (result != VK_SUCCESS)
         return noc_vk_failed(d, result, "rendering");
     f->pending = true;
@@ -501,10 +343,13 @@ static noc_status submit(vk_view *v) {
 noc_status noc_vk_accumulate(void *view, const noc_frame *frame) {
     vk_view *v = view;
     vk_facts facts = facts_of(v, frame);
+    vk_binding common = common_binding(v, frame);
     noc_past past = v->past;
+    noc_status status = NOC_OK;
     v->steps.len = 0;
-    noc_status status = noc_vk_schedule_mean(frame->plan, &facts, &v->steps) ? record(v, frame, &v->steps)
-                                                                             : noc_no_memory(v->log, "render");
+    v->pace.on = false; /* what follows is short, and changes the mean */
+    status = noc_vk_schedule_mean(frame->plan, &facts, &v->steps) ? noc_vk_record_steps(v, &common, 1, 1)
+                                                                  : noc_no_memory(v->log, "render");
     if (status == NOC_OK && (status = submit(v)) != NOC_OK)
         v->past = past;
     if (status == NOC_OK)
@@ -559,37 +404,4 @@ void noc_vk_stats(void *view, noc_frame_stats *out) {
     out->structure_bytes = noc_vk_structure_bytes(v->world);
     out->memory_bytes = d->bytes;
     out->path = "vulkan";
-}
-
-noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
-    vk_flight *f = &v->flights[v->flight];
-    const vk_picture *b = &v->b;
-    const vk_world *w = v->world;
-    vk_binding common = { .frame = f->constants.address, /* of an earlier frame: by chance rays meet other panes */
-                          .entries = w->structure.entries.address,
-                          .indices = w->indices.buffer.address,
-                          .triangle_material = w->triangle_material.buffer.address,
-                          .texels = w->texels.buffer.address,
-                          .image_corners = w->image_corners.buffer.address,
-                          .panes = w->panes.buffer.address,
-                          .through = b->through.address,
-                          .hits = b->hits.address,
-                          .counters = v->counters.address,
-                          .blocks_y = b->blocks_y };
-    VkResult result = begin_commands(f);
-    noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
-    f->steps = f->times_count = 0;
-    for (size_t i = 0; i < v->kept.len && status == NOC_OK; i++) {
-        common.rays = v->kept.data[i].rays.address;
-        common.answers = v->kept.data[i].answers.address;
-        status = record_step(v, &v->kept.data[i].step, &common);
-    }
-    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    if (status == NOC_OK && (result = submit_commands(v->device, f)) != VK_SUCCESS)
-        status = noc_vk_failed(v->device, result, "tracing rays");
-    if (status == NOC_OK)
-        status = noc_vk_wait_idle(v->device);
-    if (status == NOC_OK)
-        *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
-    return status;
 }

@@ -213,6 +213,7 @@ static VkResult make_compute(vk_device *d, const struct shader_code *code, VkPip
                                                  { 2, offsetof(vk_constants, rounds), 4 } };
     const VkSpecializationInfo constants = { NOC_COUNT(entries), entries, sizeof(d->constants), &d->constants };
     VkComputePipelineCreateInfo info = { .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT, /* steps are cut */
                                          .stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, m),
                                          .layout = d->layout };
     info.stage.pSpecializationInfo = &constants;

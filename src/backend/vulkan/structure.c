@@ -67,6 +67,9 @@ static noc_status build_part(vk_world *w, uint32_t model, vk_part *part) {
 }
 
 static noc_status make_part(vk_world *w, uint32_t model, size_t first, size_t end, vk_part **out) {
+    const noc_progress *progress = w->structure.progress;
+    if (progress && progress->update && !progress->update(progress->user, "the ray tracing structure", 0))
+        return NOC_ERR_CANCELLED;
     vk_part *part = noc_calloc(1, sizeof(*part));
     if (!part)
         return noc_no_memory(w->log, "vulkan");

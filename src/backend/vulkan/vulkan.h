@@ -157,7 +157,8 @@ typedef struct vk_structure {
     vk_buffer instances, entries, scratch; /* of the TLAS */
     vk_chunk *open;                        /* for the next small pieces of BLASes; NULL: none yet */
     VkDescriptorPool sets;
-    uint64_t geometry, moved; /* versions of the scene that it knows */
+    uint64_t geometry, moved;     /* versions of the scene that it knows */
+    const noc_progress *progress; /* asked before each part is built; NULL: the caller does not break it off */
 } vk_structure;
 
 /* ---- world.c ---- */
@@ -263,6 +264,16 @@ typedef struct vk_mean {
     double read;      /* when, or when the mean began */
 } vk_mean;
 
+/* How a frame that takes long is cut into pieces: pace.c. */
+typedef struct vk_pace {
+    /* Of each pass and shader: s an invocation, 0: not measured; and invocations that are recorded, not submitted. */
+    double cost[NOC_PASS_COUNT][VK_SHADER_COUNT], recorded[NOC_PASS_COUNT][VK_SHADER_COUNT];
+    double due;                   /* s that what is recorded is expected to take */
+    bool on;                      /* the frame at hand is cut */
+    const noc_progress *progress; /* of the stage at work; NULL: the caller does not break it off */
+    double done;                  /* share of the frame that it is told */
+} vk_pace;
+
 /* Rays of a step, kept to be traced again. */
 typedef struct vk_kept_rays {
     vk_step step;
@@ -302,6 +313,7 @@ typedef struct vk_view {
     uint32_t subsets, subset_rows;
     uint64_t mean_frames, mean_version; /* of the mean on the device */
     vk_mean mean;
+    vk_pace pace;
     noc_frame_stats stats; /* of the last finished frame; dropped: of all since it was last asked for */
     bool recording;        /* rays are kept */
     NOC_ARRAY(vk_kept_rays) kept;
@@ -392,8 +404,9 @@ size_t noc_vk_structure_bytes(const vk_world *w);
 /* world.c */
 noc_status noc_vk_world_create(void *device, const noc_scene *scene, void **world);
 void noc_vk_world_destroy(void *world);
-/* Brings everything on the device to the scene as it is; the device is locked. */
-noc_status noc_vk_world_follow(vk_world *w);
+/* Brings everything on the device to the scene as it is; the device is locked. progress: NULL, or asked as parts are
+ * built, 0 of it done, whether to go on. */
+noc_status noc_vk_world_follow(vk_world *w, const noc_progress *progress);
 /* Bytes of the scene's geometry, materials and lights, and of the ray tracing structure. */
 size_t noc_vk_world_bytes(const vk_world *w);
 /* Uploads what the candidates of the sources are drawn from. */
@@ -451,8 +464,30 @@ void noc_vk_stats(void *view, noc_frame_stats *stats);
 bool noc_vk_finish(void *view);
 noc_status noc_vk_finish_flights(vk_view *v); /* waits for the view's frames in flight and takes what they counted */
 
+/* record.c */
+/* Empties a command buffer, which a frame that was dropped may have left half recorded, and opens it; submits it. */
+VkResult noc_vk_begin_commands(const vk_flight *f);
+VkResult noc_vk_submit_commands(const vk_device *d, const vk_flight *f);
+/* Times of passes: before the first step, and when the commands have run; these are added up, and their sum returned.
+ */
+void noc_vk_start_times(const vk_device *d, vk_flight *f);
+double noc_vk_take_times(vk_view *v, vk_flight *f);
+/* Records v->steps, or runs them: from..to is their share of the frame. */
+noc_status noc_vk_record_steps(vk_view *v, const vk_binding *common, double from, double to);
 /* Traces the kept rays again, and nothing else. */
 noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor);
+
+/* pace.c */
+double noc_vk_expected_seconds(const vk_view *v, const vk_steps *steps); /* INFINITY: not known of all steps */
+/* Before the first step of a frame of which so much is expected, and so many when it has run at once. */
+void noc_vk_begin_pace(vk_view *v, double expected);
+void noc_vk_note_frame(vk_view *v, double seconds);
+bool noc_vk_may_go_on(const vk_view *v); /* false: the caller breaks the frame off */
+/* Returns true if what is recorded is to be run before the step. */
+bool noc_vk_piece_is_due(const vk_view *v, const vk_step *next);
+/* Rows of the step to be recorded from `first` on; last: those of its last piece, 0 where there is none. */
+uint32_t noc_vk_next_piece(vk_view *v, const vk_step *step, uint32_t first, uint32_t last);
+void noc_vk_note_piece(vk_view *v, double seconds); /* what is recorded has run */
 
 /* floor.c */
 void noc_vk_record(void *view, bool on);

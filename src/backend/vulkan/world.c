@@ -270,10 +270,12 @@ static noc_status follow_arrays(vk_world *w) {
 }
 
 /* The ray tracing structure, and the ways of instances back to where they were. */
-static noc_status follow_shape(vk_world *w) {
+static noc_status follow_shape(vk_world *w, const noc_progress *progress) {
     if (!noc_placings_reserve(&w->placings, w->scene))
         return noc_no_memory(w->log, "world");
+    w->structure.progress = progress;
     noc_status status = w->filled ? noc_vk_structure_follow(w) : noc_vk_structure_create(w);
+    w->structure.progress = NULL;
     if (status != NOC_OK)
         return status;
     noc_placings_follow(&w->placings, w->scene);
@@ -286,13 +288,13 @@ static noc_status fill_backs(vk_world *w) {
     return bytes ? fill(w, &w->backs, w->placings.back.data, bytes, 0, bytes, 0, "instances") : NOC_OK;
 }
 
-noc_status noc_vk_world_follow(vk_world *w) {
+noc_status noc_vk_world_follow(vk_world *w, const noc_progress *progress) {
     const noc_scene_versions *now = &w->scene->versions;
     if (w->filled && !memcmp(&w->seen, now, sizeof(*now)))
         return NOC_OK;
     noc_status status = follow_arrays(w);
     if (status == NOC_OK && (!w->filled || w->placings.shape != noc_scene_shape(now)))
-        status = follow_shape(w);
+        status = follow_shape(w, progress);
     if (status == NOC_OK && (!w->filled || noc_scene_shape(&w->seen) != noc_scene_shape(now)))
         status = fill_backs(w);
     if (status == NOC_OK)
@@ -405,7 +407,7 @@ noc_status noc_vk_world_create(void *device, const noc_scene *scene, void **worl
         free(w);
         return status;
     }
-    status = noc_vk_world_follow(w);
+    status = noc_vk_world_follow(w, NULL);
     if (status == NOC_OK)
         status = noc_vk_wait_idle(d);
     pthread_mutex_unlock(&d->lock);

@@ -1,0 +1,203 @@
+/* Frames that are run in pieces: the same bits, and the caller breaks them off between any two of these. */
+#include "all_kinds.h"
+
+#include "backend/vulkan/vulkan.h"
+#include "render/device.h"
+#include "render/view.h"
+
+#include "test.h"
+
+enum { FRAMES = 3 };
+
+static noc_log *device_log;
+static noc_device *device;
+static const noc_camera camera = { .eye = { 0, -11, 3 }, .target = { 0, 0, 2 }, .up = { 0, 0, 1 }, .fov_deg = 60 };
+
+static vk_pace *pace_of(noc_view *v) { return &((vk_view *)v->state)->pace; }
+
+/* Every invocation takes a second, as far as is known: a piece is a row of blocks, or of tiles. */
+static void expect_long(noc_view *v) {
+    vk_pace *p = pace_of(v);
+    for (int pass = 0; pass < NOC_PASS_COUNT; pass++)
+        for (int shader = 0; shader < VK_SHADER_COUNT; shader++)
+            p->cost[pass][shader] = 1;
+}
+
+/* What a frame's caller was asked. */
+typedef struct caller {
+    int calls, last; /* last: at which it breaks the frame off; 0: at none */
+    double done;
+} caller;
+
+static bool count(void *user, const char *what, double done) {
+    caller *c = user;
+    (void)what;
+    assert_true(done >= c->done && done <= 1);
+    c->done = done;
+    assert_true(!c->last || c->calls < c->last); /* it is not asked again */
+    return ++c->calls != c->last;
+}
+
+static noc_status render_cut(noc_view *v, const noc_render_params *p, caller *c) {
+    c->calls = 0;
+    c->done = 0;
+    expect_long(v);
+    return noc_view_render(v, &camera, p, &(noc_progress){ count, c });
+}
+
+static void expect_same_pictures(const char *what, noc_view *a, noc_view *b) {
+    noc_image *one = noc_view_image(a), *other = noc_view_image(b);
+    assert_true(one && other);
+    size_t n = (size_t)one->width * (size_t)one->height;
+    if (memcmp(one->rgb, other->rgb, 3 * n * sizeof(float)) != 0 || memcmp(one->emitter, other->emitter, n) != 0 ||
+        memcmp(one->coverage, other->coverage, 4 * n * sizeof(float)) != 0)
+        fail_msg("%s: the pictures differ", what);
+    noc_image_destroy(one);
+    noc_image_destroy(other);
+}
+
+static void expect_same_counts(const char *what, noc_view *a, noc_view *b) {
+    noc_frame_stats one, other;
+    noc_view_get_stats(a, &one);
+    noc_view_get_stats(b, &other);
+    if (one.rays_primary != other.rays_primary || one.rays_shadow != other.rays_shadow || one.dropped != other.dropped)
+        fail_msg("%s: %zu rays, not %zu", what, (size_t)other.rays_shadow, (size_t)one.rays_shadow);
+}
+
+static noc_render_params params_of(noc_method method, noc_candidates candidates) {
+    noc_render_params p = all_kinds_params(method, false);
+    p.candidates = candidates;
+    p.height = 42; /* the last row of tiles has three rows of blocks, the last of which is cut */
+    return p;
+}
+
+/* Returns how often the caller of the last frame was asked. */
+static int same_as_whole(const char *what, const noc_scene *scene, const noc_render_params *p) {
+    noc_view *whole = noc_view_create(device, scene), *cut = noc_view_create(device, scene);
+    caller c = { 0 };
+    assert_true(whole && cut);
+    for (int f = 0; f < FRAMES; f++) {
+        assert_int_equal(noc_view_render(whole, &camera, p, NULL), NOC_OK);
+        assert_int_equal(render_cut(cut, p, &c), NOC_OK);
+        expect_same_pictures(what, whole, cut);
+        expect_same_counts(what, whole, cut);
+    }
+    noc_view_destroy(whole);
+    noc_view_destroy(cut);
+    return c.calls;
+}
+
+static const struct {
+    const char *name;
+    noc_method method;
+    noc_candidates candidates;
+    bool panes;
+} kinds[] = {
+    { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false },
+    { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false },
+    { "uniform", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, true },
+    { "light-bvh", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, false },
+    { "influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false },
+    { "lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, true },
+    { "lists, reuse", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false },
+};
+
+static void pieces_have_the_same_bits(void **state) {
+    int car;
+    (void)state;
+    noc_scene *scenes[2] = { all_kinds_with(false, &car), all_kinds_with(true, &car) };
+    for (size_t i = 0; i < NOC_COUNT(kinds); i++) {
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
+        int calls = same_as_whole(kinds[i].name, scenes[kinds[i].panes], &p);
+        print_message("# %s: asked %d times\n", kinds[i].name, calls);
+        assert_true(calls > 2 * 11); /* at least two passes a row of blocks */
+    }
+    noc_scene_destroy(scenes[0]);
+    noc_scene_destroy(scenes[1]);
+}
+
+/* Bands of a picture are cut, too. */
+static void pieces_of_bands(void **state) {
+    size_t *bytes = &((vk_device *)device->state)->list_bytes, before = *bytes;
+    int car;
+    (void)state;
+    noc_scene *scene = all_kinds(&car);
+    *bytes = 1;
+    for (size_t i = 4; i < NOC_COUNT(kinds); i++) {
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
+        same_as_whole(kinds[i].name, scene, &p);
+    }
+    *bytes = before;
+    noc_scene_destroy(scene);
+}
+
+/* The mean stays as it was, and the next frames are those of a view that begins. */
+static void broken_off_between_pieces(void **state) {
+    int car;
+    (void)state;
+    noc_scene *scene = all_kinds(&car);
+    for (size_t i = 5; i < NOC_COUNT(kinds); i++) {
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
+        noc_view *whole = noc_view_create(device, scene), *cut = noc_view_create(device, scene);
+        caller c = { 0 };
+        int last = 1;
+        assert_int_equal(noc_view_render(whole, &camera, &p, NULL), NOC_OK);
+        do {
+            noc_view_reset(cut);
+            assert_int_equal(noc_view_render(cut, &camera, &p, NULL), NOC_OK);
+            expect_same_pictures("a view that begins", whole, cut);
+            c.last = last;
+            last += 7;
+            if (render_cut(cut, &p, &c) == NOC_OK)
+                break;
+            assert_int_equal(c.calls, c.last);
+            expect_same_pictures("broken off", whole, cut);
+        } while (last < 1000);
+        print_message("# %s: broken off at calls up to %d\n", kinds[i].name, last - 14);
+        assert_in_range(last, 50, 999);
+        noc_view_destroy(whole);
+        noc_view_destroy(cut);
+    }
+    noc_scene_destroy(scene);
+}
+
+/* Short frames are not cut, nor waited for: those of which that is known. */
+static void short_frames_are_whole(void **state) {
+    noc_render_params p = params_of(NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM);
+    int car;
+    (void)state;
+    noc_scene *scene = all_kinds(&car);
+    noc_view *v = noc_view_create(device, scene);
+    caller c = { 0 };
+    assert_int_equal(noc_view_render(v, &camera, &p, &(noc_progress){ count, &c }), NOC_OK);
+    assert_true(c.calls > 2); /* nothing was known yet */
+    vk_pace *pace = pace_of(v);
+    for (int pass = 0; pass < NOC_PASS_COUNT; pass++)
+        for (int shader = 0; shader < VK_SHADER_COUNT; shader++)
+            pace->cost[pass][shader] = NOC_MIN(pace->cost[pass][shader], 1e-12);
+    c = (caller){ 0 };
+    assert_int_equal(noc_view_render(v, &camera, &p, &(noc_progress){ count, &c }), NOC_OK);
+    assert_in_range(c.calls, 1, 2); /* stages */
+    noc_view_destroy(v);
+    noc_scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pieces_have_the_same_bits),
+        cmocka_unit_test(pieces_of_bands),
+        cmocka_unit_test(broken_off_between_pieces),
+        cmocka_unit_test(short_frames_are_whole),
+    };
+    device_log = noc_log_create(NULL);
+    device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, device_log);
+    if (!device) {
+        printf("1..0 # SKIP %s\n", noc_log_last_error(device_log));
+        noc_log_destroy(device_log);
+        return 0;
+    }
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    noc_device_destroy(device);
+    noc_log_destroy(device_log);
+    return failed;
+}
