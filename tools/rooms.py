@@ -17,7 +17,7 @@ MACHINE = set("""backend.c backend.h blocks.h cpu.h device.c devices.c embree.c 
     floor.c volk.c vulkan.h world.c bridge.glsl payload.glsl pixel.glsl trace.glsl trace_closest.rchit
     trace_closest.rgen trace_closest.rmiss trace_occlusion.rchit trace_occlusion.rgen
     trace_occlusion.rmiss lists.c list_memory.h list_group.glsl list_tile.glsl list_pixel.glsl
-    list_bridge.h learning.c blas.c mean.c""".split())
+    list_bridge.h learning.c blas.c mean.c pace.c record.c""".split())
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
 
 
