@@ -62,7 +62,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
         wall[i] = stats.wall_seconds;
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             pass[k] += stats.pass_seconds[k] / frames;
-        ok = ok && noc_view_trace_floor(r, camera, &p, &traced) == NOC_OK;
+        ok = ok && noc_view_trace_floor(r, camera, &p, NULL, &traced) == NOC_OK;
         floor[i] = traced.wall_seconds;
     }
     if (ok) {

@@ -412,10 +412,11 @@ typedef struct noc_trace_floor {
 } noc_trace_floor;
 
 /* The trace floor: renders the next frame as noc_view_render does, keeps its rays (primary, visibility, bias, final,
- * and sky where it is on), then traces those rays again through the same structure and nothing else. What the second
- * time takes goes into *floor. Takes about 600 bytes for 16 rays while it lasts. */
+ * and sky where it is on, and the same through surfaces that let light through), then traces those rays again through
+ * the same structure and nothing else. What the second time takes goes into *floor. Takes about 600 bytes for 16 rays
+ * while it lasts. progress may be NULL; NOC_ERR_CANCELLED where it breaks either off. */
 NOC_API noc_status noc_view_trace_floor(noc_view *view, const noc_camera *camera, const noc_render_params *params,
-                                        noc_trace_floor *floor);
+                                        const noc_progress *progress, noc_trace_floor *floor);
 
 #ifdef __cplusplus
 }

@@ -294,6 +294,21 @@ static void tell_part(const render_job *job, const char *why) {
         cli_error("%s: saved %d of %d frames to %s", why, job->averaged, args->frames, args->output);
 }
 
+static bool floor_progress(void *user, const char *what, double done) {
+    (void)user;
+    cli_progress_show(done, -1, "%s", what);
+    return !cli_interrupted();
+}
+
+static int measure_floor(render_job *job) {
+    noc_progress progress = { floor_progress, NULL };
+    noc_status status = noc_view_trace_floor(job->view, &job->camera, &job->args->render, &progress, &job->floor);
+    cli_progress_clear();
+    if (cli_is_failure(status))
+        return CLI_FAILURE;
+    return status ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+}
+
 /* One picture of all frames. */
 static int draw(render_job *job) {
     render_args *args = job->args;
@@ -323,7 +338,7 @@ static int draw(render_job *job) {
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */
-    if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor))
+    if (args->stats && !ending && (ending = measure_floor(job)) == CLI_FAILURE)
         return CLI_FAILURE;
     if (ending)
         tell_part(job, failed ? "stopped" : "interrupted");

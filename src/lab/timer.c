@@ -70,7 +70,7 @@ static noc_status measure(noc_lab_timer *t, timed *one, const noc_progress *prog
     memcpy(frame.pass, one->last.pass_seconds, sizeof(frame.pass));
     if (!array_push(&one->frames, frame))
         return noc_no_memory(t->log, __func__);
-    status = of->floor ? noc_view_trace_floor(one->view, &of->camera, &of->render, &floor) : NOC_OK;
+    status = of->floor ? noc_view_trace_floor(one->view, &of->camera, &of->render, progress, &floor) : NOC_OK;
     if (!status && of->floor && !array_push(&one->floors, floor))
         status = noc_no_memory(t->log, __func__);
     return status;

@@ -112,9 +112,9 @@ typedef struct noc_backend {
      * threads may call it. */
     void (*clear)(void *view, const noc_sight *sights, size_t count, float *clear);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else, and
-     * forgets them. floor is NULL: it only forgets them. */
+     * forgets them. floor is NULL: it only forgets them. progress may be NULL. */
     void (*record)(void *view, bool on);
-    noc_status (*replay)(void *view, noc_trace_floor *floor);
+    noc_status (*replay)(void *view, const noc_progress *progress, noc_trace_floor *floor);
 } noc_backend;
 
 extern const noc_backend noc_backend_embree, noc_backend_vulkan;

@@ -312,7 +312,7 @@ noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params
 }
 
 noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc_render_params *params,
-                                noc_trace_floor *floor) {
+                                const noc_progress *progress, noc_trace_floor *floor) {
     if (!v || !camera || !floor)
         return noc_null(v ? v->log : NULL, __func__);
     const noc_render_params defaults = noc_render_default_params();
@@ -322,9 +322,10 @@ noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc
         return status;
     noc_scene_lock_frame(v->scene); /* until its rays are traced again: the structure stays as it is */
     v->backend->record(v->state, true);
-    status = make_frame(v, camera, params, NULL);
+    status = make_frame(v, camera, params, progress);
     v->backend->record(v->state, false);
-    noc_status traced = v->backend->replay(v->state, status == NOC_OK ? floor : NULL);
+    noc_status traced = v->backend->replay(v->state, progress, status == NOC_OK ? floor : NULL);
     noc_scene_unlock_frame(v->scene);
-    return status != NOC_OK ? status : traced;
+    status = status != NOC_OK ? status : traced;
+    return status == NOC_ERR_CANCELLED ? noc_cancelled(v->log, "render: cancelled") : status;
 }

@@ -84,7 +84,7 @@ static void expect_later_calls(const char *when, noc_device *device, noc_scene *
         }
     assert_int_equal(noc_view_render(v, &camera, p, NULL), NOC_ERR_LOST);
     EXPECT_TOLD(when, "vulkan: the device was lost before");
-    assert_int_equal(noc_view_trace_floor(v, &camera, p, &floor), NOC_ERR_LOST);
+    assert_int_equal(noc_view_trace_floor(v, &camera, p, NULL, &floor), NOC_ERR_LOST);
     EXPECT_TOLD(when, "vulkan: the device was lost before");
     assert_int_equal(noc_view_render(v, &camera, &larger, NULL), NOC_ERR_LOST);
     EXPECT_TOLD(when, "vulkan: the device was lost before");

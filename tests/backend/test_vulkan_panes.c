@@ -115,7 +115,7 @@ static void rays_agree(void **state) {
     assert_true(off < 3 * 128 * 128 / 500 && fabs(sums[1] / sums[0] - 1) < 1e-3);
     noc_image_destroy(a);
     noc_image_destroy(b);
-    assert_int_equal(noc_view_trace_floor(t.gpu, &camera, &p, &floor), NOC_OK);
+    assert_int_equal(noc_view_trace_floor(t.gpu, &camera, &p, NULL, &floor), NOC_OK);
     close_twins(&t);
     noc_scene_destroy(scene);
 }

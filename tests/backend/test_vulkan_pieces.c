@@ -26,13 +26,14 @@ static void expect_long(noc_view *v) {
 /* What a frame's caller was asked. */
 typedef struct caller {
     int calls, last; /* last: at which it breaks the frame off; 0: at none */
+    bool again;      /* what is done may begin anew */
     double done;
 } caller;
 
 static bool count(void *user, const char *what, double done) {
     caller *c = user;
     (void)what;
-    assert_true(done >= c->done && done <= 1);
+    assert_true((done >= c->done || c->again) && done <= 1);
     c->done = done;
     assert_true(!c->last || c->calls < c->last); /* it is not asked again */
     return ++c->calls != c->last;
@@ -182,12 +183,60 @@ static void short_frames_are_whole(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* The trace floor of a frame is cut as the frame is, and either half can be broken off. */
+static void floors_are_cut(void **state) {
+    noc_render_params p = params_of(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS);
+    int car, last = 1;
+    (void)state;
+    noc_scene *scene = all_kinds_with(true, &car);
+    noc_view *v = noc_view_create(device, scene);
+    for (noc_status status = NOC_ERR_CANCELLED; status != NOC_OK; last += 9) {
+        noc_trace_floor floor = { -1, -1 };
+        caller c = { .last = last, .again = true };
+        expect_long(v);
+        status = noc_view_trace_floor(v, &camera, &p, &(noc_progress){ count, &c }, &floor);
+        assert_true(status == NOC_OK || (status == NOC_ERR_CANCELLED && c.calls == last));
+        assert_true((floor.wall_seconds >= 0) == (status == NOC_OK));
+    }
+    print_message("# broken off at calls up to %d\n", last - 18);
+    assert_in_range(last, 200, 400); /* the frame's, and a row of each of its 5 steps with rays twice */
+    noc_view_destroy(v);
+    noc_scene_destroy(scene);
+}
+
+/* More steps with rays than a command buffer has room for. */
+static void a_floor_of_many_steps(void **state) {
+    enum { LIGHTS = 1024 };
+    noc_render_params p = params_of(NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM);
+    noc_trace_floor floor = { -1, -1 };
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.5f), 0, 0, 0, 12);
+    add_pane(s, 0.5f, 0, 0, (double[]){ -6, -6, 2.5 }, 9, 9, true); /* a second step for each */
+    for (int i = 0; i < LIGHTS; i++) {
+        noc_light l = crowd_light(i, -2);
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    p.width = p.height = 8;
+    p.rays = LIGHTS;
+    noc_view *v = noc_view_create(device, s);
+    assert_int_equal(noc_view_trace_floor(v, &camera, &p, NULL, &floor), NOC_OK);
+    const vk_view *state_of = v->state;
+    assert_true(floor.wall_seconds > 0);
+    assert_in_range(state_of->flights[state_of->flight].steps, 1, VK_STEPS);
+    noc_view_destroy(v);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pieces_have_the_same_bits),
         cmocka_unit_test(pieces_of_bands),
         cmocka_unit_test(broken_off_between_pieces),
         cmocka_unit_test(short_frames_are_whole),
+        cmocka_unit_test(floors_are_cut),
+        cmocka_unit_test(a_floor_of_many_steps),
     };
     device_log = noc_log_create(NULL);
     device = noc_device_create(&(noc_device_params){ .backend = NOC_BACKEND_VULKAN }, device_log);

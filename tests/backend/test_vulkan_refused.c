@@ -76,8 +76,8 @@ static noc_status go_on(const trial *t, noc_device *device, noc_scene *scene, no
     noc_trace_floor floor;
     if (!*v && !(*v = noc_view_create(device, scene)))
         return NOC_ERR_MEMORY;
-    noc_status status =
-        t->floor ? noc_view_trace_floor(*v, &camera, &t->then, &floor) : noc_view_render(*v, &camera, &t->then, NULL);
+    noc_status status = t->floor ? noc_view_trace_floor(*v, &camera, &t->then, NULL, &floor)
+                                 : noc_view_render(*v, &camera, &t->then, NULL);
     if (status == NOC_OK)
         status = noc_view_render(*v, &camera, &t->then, NULL);
     noc_image *image = status == NOC_OK ? noc_view_image(*v) : NULL;

@@ -98,7 +98,7 @@ static void frames_are_valid(void **state) {
         p.width = 40;
         *told = 0; /* that it was cancelled */
         render_two(v, &p, plans[i].name);
-        assert_int_equal(noc_view_trace_floor(v, &camera, &p, &floor), NOC_OK);
+        assert_int_equal(noc_view_trace_floor(v, &camera, &p, NULL, &floor), NOC_OK);
         noc_view_destroy(v);
         noc_scene_destroy(scene);
         expect_silence(plans[i].name);

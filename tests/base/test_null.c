@@ -305,7 +305,7 @@ static noc_camera camera;
     P(noc_log_destroy(noc_log_create(NULL)), true)                                                                     \
     P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
     P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
-    P(0, noc_view_trace_floor(NULL, &camera, NULL, &(noc_trace_floor){ 0 }) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_view_trace_floor(NULL, &camera, NULL, NULL, &(noc_trace_floor){ 0 }) == NOC_ERR_ARGUMENT)                 \
     P(noc_lab_timer_destroy(noc_lab_timer_create(NULL)), true)                                                         \
     P(noc_lab_timer_destroy(NULL), true)                                                                               \
     P(0, noc_lab_timer_add(NULL, &(noc_lab_case){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                      \
@@ -346,7 +346,7 @@ static noc_camera camera;
     P(0, noc_ranking_get(NULL, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_ranking_get_classes(NULL, NULL, 0, NULL) == NOC_ERR_ARGUMENT)                                             \
     P(noc_hit_patch(NULL, 1, NULL, NULL), true)                                                                        \
-    P(0, noc_view_trace_floor(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
+    P(0, noc_view_trace_floor(view, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
 #define NAME(call, check) #call " / " #check,
 static const char *const names[] = { PROBES(NAME) };

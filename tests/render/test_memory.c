@@ -259,7 +259,7 @@ static noc_status read_all(noc_view *r, const noc_render_params *p) {
     noc_trace_floor floor;
     noc_image *image = noc_view_image(r);
     noc_channel *normal = image ? noc_view_aov(r, NOC_AOV_NORMAL) : NULL;
-    noc_status status = normal ? noc_view_trace_floor(r, camera(), p, &floor) : NOC_ERR_MEMORY;
+    noc_status status = normal ? noc_view_trace_floor(r, camera(), p, NULL, &floor) : NOC_ERR_MEMORY;
     noc_image_destroy(image);
     noc_channel_destroy(normal);
     return status;

@@ -507,7 +507,7 @@ static void frames_and_resets(void **state) {
                 stats.structure_bytes > 0); /* blocks */
     assert_true(stats.picture_bytes + stats.structure_bytes + stats.learned_bytes <= stats.memory_bytes);
     noc_trace_floor floor = { 0 };
-    assert_int_equal(noc_view_trace_floor(r, &c, &p, &floor), NOC_OK);
+    assert_int_equal(noc_view_trace_floor(r, &c, &p, NULL, &floor), NOC_OK);
     assert_true(floor.wall_seconds > 0 && floor.cpu_seconds > 0);
     assert_int_equal(frames_of(r), 2); /* it was a frame like any other */
     noc_image_destroy(first);

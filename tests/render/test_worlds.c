@@ -281,12 +281,12 @@ static void *edit_late(void *arg) {
     return arg;
 }
 
-static noc_status replay_beside_a_commit(void *view, noc_trace_floor *floor) {
+static noc_status replay_beside_a_commit(void *view, const noc_progress *progress, noc_trace_floor *floor) {
     assert_int_equal(pthread_create(&late.thread, NULL, edit_late, NULL), 0);
     for (int i = 0; i < 100 && !late.committed; i++)
         usleep(1000);
     late.early = late.committed;
-    return noc_backend_embree.replay(view, floor);
+    return noc_backend_embree.replay(view, progress, floor);
 }
 
 /* The trace floor's rays are traced through the structure of their frame. */
@@ -302,7 +302,7 @@ static void rays_are_replayed_before_a_commit(void **state) {
     noc_trace_floor floor = { 0 };
     describe(&l, 0);
     late.editor = (editor){ .scene = s, .commits = 1 };
-    assert_int_equal(noc_view_trace_floor(v, &l.camera, &l.params, &floor), NOC_OK);
+    assert_int_equal(noc_view_trace_floor(v, &l.camera, &l.params, NULL, &floor), NOC_OK);
     pthread_join(late.thread, NULL);
     assert_false(late.early);
     assert_true(late.committed && !late.editor.failed && floor.wall_seconds > 0);

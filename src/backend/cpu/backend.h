@@ -29,7 +29,7 @@ noc_status noc_cpu_cast(void *view, const noc_ray *rays, size_t count, noc_hit *
 noc_status noc_cpu_ask(void *view, const noc_render_params *params, bool tree, noc_asking *out);
 void noc_cpu_clear(void *view, const noc_sight *sights, size_t count, float *clear);
 void noc_cpu_record(void *view, bool on);
-noc_status noc_cpu_replay(void *view, noc_trace_floor *floor);
+noc_status noc_cpu_replay(void *view, const noc_progress *progress, noc_trace_floor *floor);
 
 /* All of a noc_backend but the creation of a device. */
 #define NOC_CPU_BACKEND                                                                                                \

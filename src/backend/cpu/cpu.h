@@ -19,11 +19,18 @@
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
 _Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK,
                "a tile's points ask together");
+typedef enum packet_kind {
+    PACKET_PRIMARY, /* block.light: by which its rays meet surfaces that let light through */
+    PACKET_SHADOW,
+    PACKET_THROUGH, /* segments that nothing blocks, for what surfaces let through */
+} packet_kind;
+
 /* A packet kept for the trace floor. Shadow rays that were traced in one call lie one after the other. */
 typedef struct packet {
     shadow_block block;
     int together; /* so many of them from here on were one call */
-    bool primary;
+    packet_kind kind;
+    noc_ray_world in;
 } packet;
 
 /* What is expected in a cell of the scene, and what its rays find. */
@@ -222,14 +229,14 @@ noc_frame_blocks noc_cpu_blocks(const cpu_view *s, int gbuffer);
 void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count);
 /* Transmittance of the unoccluded segments of up to MANY_BLOCKS blocks. False, and nothing is written: no surface of
  * the scene lets light through. */
-bool noc_cpu_through(const cpu_view *s, const shadow_block *blocks, int count, float (*out)[BLOCK]);
+bool noc_cpu_through(const cpu_view *s, worker *w, const shadow_block *blocks, int count, float (*out)[BLOCK]);
 /* Traces camera rays and stores the receivers that they find in block `at` of the G-buffer, with their instances, and
  * their objects and walls for the views that ask for these. Lanes outside `valid` find nothing. chance: the pixels'
  * keys, as noc_tracer.closest has them. */
 void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, const uint32_t *chance, uint32_t valid,
                      size_t at);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
-noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor);
+noc_status noc_cpu_replay_rays(cpu_view *s, const noc_progress *progress, noc_trace_floor *floor);
 
 /* scratch.c: what the passes of a plan want, for each thread */
 noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan);

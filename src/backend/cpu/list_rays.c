@@ -165,11 +165,11 @@ static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
 }
 
 /* Multiplies W of rays that arrived by the transmittance on their way. */
-static void weaken_rays(const stage_run *run, tile_rays *t) {
+static void weaken_rays(const stage_run *run, worker *w, tile_rays *t) {
     float through[MANY_BLOCKS][BLOCK];
     for (int first = 0; first < t->count; first += MANY_BLOCKS) {
         int n = NOC_MIN(MANY_BLOCKS, t->count - first);
-        if (!noc_cpu_through(run->s, t->segments + first, n, through))
+        if (!noc_cpu_through(run->s, w, t->segments + first, n, through))
             return;
         for (int i = 0; i < n * BLOCK; i++)
             t->draws[first + i / BLOCK].r.w[i % BLOCK] *= through[i / BLOCK][i % BLOCK];
@@ -182,7 +182,7 @@ void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
         share_with_reservoirs(run, t, at);
     const gblock *g = run->s->b.g[run->frame->gbuffer];
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
-        weaken_rays(run, t);
+        weaken_rays(run, w, t);
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];
         if (t->segments[i].unoccluded)

@@ -301,7 +301,7 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         float through[MANY_BLOCKS][BLOCK];
-        bool weak = rays && noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
+        bool weak = rays && noc_cpu_through(run->s, w, w->batch.blocks, w->batch.count, through);
         for (uint32_t i = 0; i < n; i++) {
             rblock part;
             const rblock *shaded = weak ? weaken(&r[i], through[i], &part) : &r[i];
@@ -331,7 +331,7 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-    bool weak = noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
+    bool weak = noc_cpu_through(run->s, w, w->batch.blocks, w->batch.count, through);
     for (int i = 0, answer = 0; i < n; i++) {
         size_t at = blocks[i].at;
         rblock part, mixed;
@@ -434,7 +434,7 @@ static void sky(stage_run *run, worker *w, tile t) {
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         float through[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
-        bool weak = noc_cpu_through(run->s, w->batch.blocks, w->batch.count, through);
+        bool weak = noc_cpu_through(run->s, w, w->batch.blocks, w->batch.count, through);
         for (int i = 0; i < w->batch.count; i++) {
             const shadow_block *s = &w->batch.blocks[i];
             size_t at = asked[i];

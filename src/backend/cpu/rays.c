@@ -3,9 +3,8 @@
 
 #include <math.h>
 
-static void keep(cpu_view *s, worker *w, const rayblock *rays, const uint32_t *light, uint32_t valid, int together,
-                 bool primary) {
-    if (!s->recording || w->record.lost)
+static void keep(const cpu_view *s, worker *w, const packet *p) {
+    if (w->record.lost)
         return;
     if (w->record.count == w->record.room) {
         size_t room = w->record.room ? w->record.room * 2 : 4096;
@@ -20,10 +19,7 @@ static void keep(cpu_view *s, worker *w, const rayblock *rays, const uint32_t *l
         w->record.packets = more;
         w->record.room = room;
     }
-    packet *p = &w->record.packets[w->record.count++];
-    *p = (packet){ .block = { .rays = *rays, .valid = valid }, .together = together, .primary = primary };
-    if (light)
-        memcpy(p->block.light, light, sizeof(p->block.light));
+    w->record.packets[w->record.count++] = *p;
 }
 
 static void count_rays(worker *w, float *counts, uint32_t valid) {
@@ -38,7 +34,8 @@ void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_bl
         for (int i = 0; i < n; i++) {
             shadow_block *b = &blocks[first + i];
             count_rays(w, b->counts, b->valid);
-            keep(s, w, &b->rays, b->light, b->valid, n - i, false);
+            if (s->recording)
+                keep(s, w, &(packet){ .block = *b, .together = n - i, .kind = PACKET_SHADOW, .in = in });
         }
         s->world->device->tracer->occluded(s->world->rays, in, blocks + first, n);
     }
@@ -86,8 +83,18 @@ static void closest(const cpu_world *world, noc_ray_world in, const rayblock *ra
     world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, chance, hits);
 }
 
-bool noc_cpu_through(const cpu_view *s, const shadow_block *blocks, int count, float (*out)[BLOCK]) {
-    return s->world->device->tracer->through(s->world->rays, blocks, count, out);
+bool noc_cpu_through(const cpu_view *s, worker *w, const shadow_block *blocks, int count, float (*out)[BLOCK]) {
+    if (!s->world->device->tracer->through(s->world->rays, blocks, count, out))
+        return false;
+    for (int i = 0; i < count && s->recording; i++)
+        keep(s, w, &(packet){ .block = blocks[i], .together = count - i, .kind = PACKET_THROUGH });
+    return true;
+}
+
+static void keep_primary(const cpu_view *s, worker *w, const rayblock *rays, const uint32_t *chance, uint32_t valid) {
+    packet p = { .block = { .rays = *rays, .valid = valid }, .together = 1, .kind = PACKET_PRIMARY };
+    memcpy(p.block.light, chance, sizeof(p.block.light));
+    keep(s, w, &p);
 }
 
 void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, const uint32_t *chance, uint32_t valid,
@@ -96,7 +103,8 @@ void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, cons
     hitblock h;
     struck_block found = { 0 };
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
-    keep(s, w, rays, NULL, valid, 1, true);
+    if (s->recording)
+        keep_primary(s, w, rays, chance, valid);
     closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, chance, &h);
     if (s->b.instance)
         memcpy(s->b.instance[at], h.instance, sizeof(h.instance));
@@ -123,34 +131,67 @@ enum { REPLAY_RUN = 64 };
 
 struct replay {
     cpu_view *s;
+    const noc_progress *progress;
+    size_t count;
+    atomic_size_t done;
+    atomic_bool cancelled;
     struct replay_item {
         const packet *first;
         size_t count;
     } * items;
 };
 
+/* Traces n packets that were one call. */
+static void replay_call(const cpu_world *world, const packet *p, int n) {
+    shadow_block many[MANY_BLOCKS];
+    float through[MANY_BLOCKS][BLOCK];
+    hitblock hits;
+    if (p->kind == PACKET_PRIMARY) {
+        closest(world, p->in, &p->block.rays, INFINITY, p->block.valid, true, p->block.light, &hits);
+        return;
+    }
+    for (int i = 0; i < n; i++)
+        many[i] = p[i].block;
+    if (p->kind == PACKET_SHADOW)
+        world->device->tracer->occluded(world->rays, p->in, many, n);
+    else
+        world->device->tracer->through(world->rays, many, n, through);
+}
+
+static bool goes_on(const noc_progress *progress, double done) {
+    return !progress || !progress->update || progress->update(progress->user, "the trace floor", done);
+}
+
 static void replay_run(void *ctx, size_t item, int index) {
     struct replay *r = ctx;
     const packet *p = r->items[item].first, *end = p + r->items[item].count;
-    shadow_block many[MANY_BLOCKS];
-    (void)index;
+    if (atomic_load_explicit(&r->cancelled, memory_order_relaxed))
+        return;
     while (p < end) {
         int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);
-        if (p->primary) {
-            hitblock hits;
-            closest(r->s->world, NOC_RAYS_NOW, &p->block.rays, INFINITY, p->block.valid, true, NULL, &hits);
-        } else {
-            for (int i = 0; i < n; i++)
-                many[i] = p[i].block;
-            r->s->world->device->tracer->occluded(r->s->world->rays, NOC_RAYS_NOW, many, n);
-        }
+        replay_call(r->s->world, p, n);
         p += n;
     }
+    size_t done = atomic_fetch_add(&r->done, 1) + 1;
+    if (index == 0 && !goes_on(r->progress, (double)done / (double)r->count))
+        atomic_store(&r->cancelled, true);
 }
 
-noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor) {
+/* False: the caller breaks it off. */
+static bool replay_all(struct replay *r, noc_trace_floor *floor) {
+    if (!goes_on(r->progress, 0))
+        return false;
+    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
+    noc_pool_run(r->s->pool, r->count, replay_run, r);
+    if (atomic_load(&r->cancelled))
+        return false;
+    *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
+    return true;
+}
+
+noc_status noc_cpu_replay_rays(cpu_view *s, const noc_progress *progress, noc_trace_floor *floor) {
     NOC_ARRAY(struct replay_item) items = { 0 };
-    bool whole = true;
+    bool whole = true, complete = true;
     for (int i = 0; i < s->worker_count; i++) {
         const worker *w = &s->workers[i];
         whole = whole && !w->record.lost;
@@ -159,12 +200,12 @@ noc_status noc_cpu_replay_rays(cpu_view *s, noc_trace_floor *floor) {
                                                              NOC_MIN((size_t)REPLAY_RUN, w->record.count - k) });
     }
     if (whole) {
-        struct replay r = { s, items.data };
-        double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-        noc_pool_run(s->pool, items.len, replay_run, &r);
-        *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
+        struct replay r = { .s = s, .progress = progress, .count = items.len, .items = items.data };
+        complete = replay_all(&r, floor);
     }
     array_free(&items);
+    if (!complete)
+        return NOC_ERR_CANCELLED;
     return whole ? NOC_OK
                  : noc_error(s->log, NOC_ERR_MEMORY, "render: no memory to keep the rays of a frame of %d x %d",
                              s->b.width, s->b.height);

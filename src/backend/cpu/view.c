@@ -210,9 +210,9 @@ void noc_cpu_record(void *state, bool on) {
         forget_packets(s);
 }
 
-noc_status noc_cpu_replay(void *state, noc_trace_floor *floor) {
+noc_status noc_cpu_replay(void *state, const noc_progress *progress, noc_trace_floor *floor) {
     cpu_view *s = state;
-    noc_status status = floor ? noc_cpu_replay_rays(s, floor) : NOC_OK;
+    noc_status status = floor ? noc_cpu_replay_rays(s, progress, floor) : NOC_OK;
     forget_packets(s);
     return status;
 }

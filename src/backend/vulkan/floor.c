@@ -41,12 +41,12 @@ void noc_vk_record(void *view, bool on) {
     pthread_mutex_unlock(&v->device->lock);
 }
 
-noc_status noc_vk_replay(void *view, noc_trace_floor *floor) {
+noc_status noc_vk_replay(void *view, const noc_progress *progress, noc_trace_floor *floor) {
     vk_view *v = view;
     pthread_mutex_lock(&v->device->lock);
     noc_status status = noc_vk_finish_flights(v);
     if (status == NOC_OK && floor)
-        status = noc_vk_trace_kept(v, floor);
+        status = noc_vk_trace_kept(v, progress, floor);
     noc_vk_forget_rays(v);
     pthread_mutex_unlock(&v->device->lock);
     return status;

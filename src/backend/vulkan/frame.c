@@ -210,7 +210,8 @@ static noc_status fit_buffers(vk_view *v, const noc_frame *frame, double *expect
         if (!noc_vk_schedule(frame->plan, &frame->plan->stages[i], &facts, &v->steps))
             return noc_no_memory(v->log, "render");
         rays = NOC_MAX(rays, noc_vk_ray_room(&v->steps, &facts));
-        *expected += noc_vk_expected_seconds(v, &v->steps);
+        for (size_t k = 0; k < v->steps.len; k++)
+            *expected += noc_vk_expected_seconds(v, &v->steps.data[k]);
     }
     noc_status status = noc_vk_view_fit(v, rays, noc_vk_scratch_bytes(frame->plan, &facts));
     return status == NOC_OK && frame->plan->learns ? noc_vk_view_fit_learning(v, &frame->constants) : status;

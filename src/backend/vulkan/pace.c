@@ -18,14 +18,9 @@ static double invocations_a_row(const vk_view *v, const vk_step *s) {
     return can_cut(s->domain) ? (double)v->b.blocks_x * BLOCK * s->slots : 1.0 / rows_of(v, s);
 }
 
-double noc_vk_expected_seconds(const vk_view *v, const vk_steps *steps) {
-    double sum = 0;
-    for (size_t i = 0; i < steps->len; i++) {
-        const vk_step *s = &steps->data[i];
-        double cost = v->pace.cost[s->pass][s->shader];
-        sum += cost > 0 ? cost * invocations_a_row(v, s) * rows_of(v, s) : INFINITY;
-    }
-    return sum;
+double noc_vk_expected_seconds(const vk_view *v, const vk_step *s) {
+    double cost = v->pace.cost[s->pass][s->shader];
+    return cost > 0 ? cost * invocations_a_row(v, s) * rows_of(v, s) : INFINITY;
 }
 
 void noc_vk_begin_pace(vk_view *v, double expected) {

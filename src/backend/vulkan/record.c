@@ -119,10 +119,6 @@ static noc_status record_rows(vk_view *v, const vk_step *step, row_range rows, c
     return NOC_OK;
 }
 
-static noc_status record_step(vk_view *v, const vk_step *step, const vk_binding *common) {
-    return record_rows(v, step, (row_range){ 0, step->rows ? step->rows : v->b.blocks_y }, common);
-}
-
 /* ---- what is submitted ---- */
 
 /* A frame that was dropped may have left them half recorded. */
@@ -225,35 +221,56 @@ noc_status noc_vk_record_steps(vk_view *v, const vk_binding *common, double from
 
 /* ---- the trace floor ---- */
 
-noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor) {
-    vk_flight *f = &v->flights[v->flight];
+/* What steps that trace read, but for their rays. */
+static vk_binding tracing_binding(const vk_view *v) {
+    const vk_flight *f = &v->flights[v->flight];
     const vk_picture *b = &v->b;
     const vk_world *w = v->world;
-    vk_binding common = { .frame = f->constants.address, /* of an earlier frame: by chance rays meet other panes */
-                          .entries = w->structure.entries.address,
-                          .indices = w->indices.buffer.address,
-                          .triangle_material = w->triangle_material.buffer.address,
-                          .texels = w->texels.buffer.address,
-                          .image_corners = w->image_corners.buffer.address,
-                          .panes = w->panes.buffer.address,
-                          .through = b->through.address,
-                          .hits = b->hits.address,
-                          .counters = v->counters.address,
-                          .blocks_y = b->blocks_y };
-    VkResult result = noc_vk_begin_commands(f);
-    noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
-    f->steps = f->times_count = 0;
+    return (vk_binding){ .frame = f->constants.address, /* of an earlier frame: by chance rays meet other panes */
+                         .entries = w->structure.entries.address,
+                         .indices = w->indices.buffer.address,
+                         .triangle_material = w->triangle_material.buffer.address,
+                         .texels = w->texels.buffer.address,
+                         .image_corners = w->image_corners.buffer.address,
+                         .panes = w->panes.buffer.address,
+                         .through = b->through.address,
+                         .hits = b->hits.address,
+                         .counters = v->counters.address,
+                         .blocks_y = b->blocks_y };
+}
+
+static noc_status record_kept(vk_view *v) {
+    vk_binding common = tracing_binding(v);
+    noc_status status = NOC_OK;
     for (size_t i = 0; i < v->kept.len && status == NOC_OK; i++) {
         common.rays = v->kept.data[i].rays.address;
         common.answers = v->kept.data[i].answers.address;
-        status = record_step(v, &v->kept.data[i].step, &common);
+        v->pace.done = (double)i / (double)v->kept.len;
+        status = record_pieces(v, &v->kept.data[i].step, &common);
     }
+    return status;
+}
+
+noc_status noc_vk_trace_kept(vk_view *v, const noc_progress *progress, noc_trace_floor *floor) {
+    vk_flight *f = &v->flights[v->flight];
+    double expected = 0;
+    for (size_t i = 0; i < v->kept.len; i++)
+        expected += noc_vk_expected_seconds(v, &v->kept.data[i].step);
+    v->pace.progress = progress;
+    noc_vk_begin_pace(v, expected);
+    VkResult result = noc_vk_begin_commands(f);
+    noc_status status = result == VK_SUCCESS ? NOC_OK : noc_vk_failed(v->device, result, "recording a frame");
+    f->steps = 0;
+    noc_vk_start_times(v->device, f);
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
+    if (status == NOC_OK)
+        status = record_kept(v);
     if (status == NOC_OK && (result = noc_vk_submit_commands(v->device, f)) != VK_SUCCESS)
         status = noc_vk_failed(v->device, result, "tracing rays");
     if (status == NOC_OK)
         status = noc_vk_wait_idle(v->device);
     if (status == NOC_OK)
         *floor = (noc_trace_floor){ noc_wall_seconds() - wall, noc_cpu_seconds() - cpu };
+    v->pace.on = false;
     return status;
 }

@@ -475,10 +475,10 @@ double noc_vk_take_times(vk_view *v, vk_flight *f);
 /* Records v->steps, or runs them: from..to is their share of the frame. */
 noc_status noc_vk_record_steps(vk_view *v, const vk_binding *common, double from, double to);
 /* Traces the kept rays again, and nothing else. */
-noc_status noc_vk_trace_kept(vk_view *v, noc_trace_floor *floor);
+noc_status noc_vk_trace_kept(vk_view *v, const noc_progress *progress, noc_trace_floor *floor);
 
 /* pace.c */
-double noc_vk_expected_seconds(const vk_view *v, const vk_steps *steps); /* INFINITY: not known of all steps */
+double noc_vk_expected_seconds(const vk_view *v, const vk_step *step); /* INFINITY: it is not known */
 /* Before the first step of a frame of which so much is expected, and so many when it has run at once. */
 void noc_vk_begin_pace(vk_view *v, double expected);
 void noc_vk_note_frame(vk_view *v, double seconds);
@@ -491,7 +491,7 @@ void noc_vk_note_piece(vk_view *v, double seconds); /* what is recorded has run 
 
 /* floor.c */
 void noc_vk_record(void *view, bool on);
-noc_status noc_vk_replay(void *view, noc_trace_floor *floor);
+noc_status noc_vk_replay(void *view, const noc_progress *progress, noc_trace_floor *floor);
 /* Keeps the rays that the step is about to trace. */
 noc_status noc_vk_keep_rays(vk_view *v, const vk_step *step);
 void noc_vk_forget_rays(vk_view *v);
