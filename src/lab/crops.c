@@ -15,7 +15,7 @@ typedef struct panels {
     int width, height;  /* of a picture */
     double ev100;       /* of all: the reference's automatic exposure */
     uint8_t *reference; /* 8-bit sRGB */
-    bool light;         /* the light view; the reference has none */
+    bool light;         /* the light view; the reference, which has none, is shown as it is seen */
 } panels;
 
 /* NULL after reporting that memory was refused. */
@@ -111,7 +111,7 @@ static noc_status choose(const panels *p, lab_crop *crop) {
 static noc_status fill_sheet(const panels *p, lab_sheet *sheet) {
     const lab_spec *spec = p->lab->spec;
     noc_status status = NOC_OK;
-    lab_add_panel(sheet, 0, p->light ? NULL : p->reference, p->width, "reference");
+    lab_add_panel(sheet, 0, p->reference, p->width, "reference");
     for (size_t i = 0; i < spec->config_count && !status; i++) {
         uint8_t *picture = NULL;
         status = read_picture(p, i, &picture);
@@ -131,15 +131,22 @@ static noc_status write_sheet(const panels *p, const lab_crop *crop) {
         path ? lab_start_sheet(&sheet, crop, &spec->cameras[p->camera], spec->config_count + 1, path, p->lab->log)
              : noc_no_memory(p->lab->log, name);
     status = status ? status : fill_sheet(p, &sheet);
-    const char *keys[] = { "picture" },
-               *values[] = { p->light ? "the light that each pixel chose, by each configuration, row by row"
-                                      : "the reference, and one frame of each configuration, row by row" };
+    const char *keys[] = { "picture" }, *values[] = {
+        p->light ? "the reference, and the light that each pixel chose, by each configuration, row by row"
+                 : "the reference, and one frame of each configuration, row by row"
+    };
     if (!status)
         status = noc_image_write_srgb8(sheet.rgb, sheet.width, sheet.height, path, &(noc_image_meta){ 1, keys, values },
                                        p->lab->log);
     free(path);
     free(sheet.rgb);
     return status;
+}
+
+/* As many rows as MOST_COLUMNS takes, all of them full or nearly so. */
+static int columns_of(int count) {
+    int rows = (count + MOST_COLUMNS - 1) / MOST_COLUMNS;
+    return (count + rows - 1) / rows;
 }
 
 noc_status lab_make_crops(lab_session *lab, size_t camera) {
@@ -164,7 +171,7 @@ noc_status lab_make_crops(lab_session *lab, size_t camera) {
         if (status)
             break;
         crop->scale = crop->width < PANEL ? PANEL / crop->width : 1;
-        crop->columns = spec->config_count + 1 < MOST_COLUMNS ? (int)spec->config_count + 1 : MOST_COLUMNS;
+        crop->columns = columns_of((int)spec->config_count + 1);
         for (int light = 0; light <= spec->light_view && !status; light++) {
             p.light = light;
             status = write_sheet(&p, crop);

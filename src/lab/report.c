@@ -206,7 +206,9 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
     }
     fputs(". All have the reference's exposure.\n", out);
     if (spec->light_view)
-        fputs("\nLights are those that the pixels' reservoirs hold, each in its own colour; grey: none.\n", out);
+        fputs("\nLights are those that the pixels' reservoirs hold, each in its own colour; grey: none. The reference, "
+              "which has no reservoirs, is shown as it is seen.\n",
+              out);
 }
 
 /* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ

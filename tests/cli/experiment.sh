@@ -125,8 +125,9 @@ else
     skip "xmllint agrees" "no xmllint here"
 fi
 sheet=$(for f in a/*.png; do meta "$f" size; done | sort -u)
-panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
-test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (22 + 220 + 4) - 4))"
+panels=$((2 + choices)) rows=$(((2 + choices + 3) / 4)) # of four panels at most, as many in each as can be
+columns=$(((panels + rows - 1) / rows))
+test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $((rows * (22 + 220 + 4) - 4))"
 result $? "crops: the reference and each configuration, a third of the picture enlarged, each under its name" "$sheet"
 
 grep -q "^With n = 2, 95 % of such means lie within 12.7 standard errors (Student's t): " a/report.md
