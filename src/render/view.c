@@ -3,6 +3,7 @@
 #include "light/influence.h"
 #include "render/view.h"
 
+#include <math.h>
 #include <nocturne/option.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -82,10 +83,13 @@ static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
         return NOC_OK;
     uint64_t pixels = ((uint64_t)p->width + 3) * ((uint64_t)p->height + 3);
     uint64_t need = pixels * v->backend->bytes_a_pixel(sets, p->aovs), have = machine_memory();
+    double scale = sqrt((double)(have - have / 8) / (double)need);
     if (need > have - have / 8)
-        return noc_error(v->log, NOC_ERR_MEMORY,
-                         "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f", p->width,
-                         p->height, (double)need * 1e-9, (double)have * 1e-9);
+        return noc_error(
+            v->log, NOC_ERR_MEMORY,
+            "render: a picture of %d x %d (%d x %d would fit) needs %.1f GB of memory, this machine has %.1f", p->width,
+            p->height, (int)(p->width * scale) & ~3, (int)(p->height * scale) & ~3, (double)need * 1e-9,
+            (double)have * 1e-9);
     if (v->width != p->width || v->height != p->height)
         noc_history_forget(&v->history, NOC_RESETS_MEAN | NOC_RESETS_RESERVOIRS);
     noc_status status = v->backend->resize(v->state, p->width, p->height, sets);

@@ -126,7 +126,7 @@ static void open_with(const noc_scene *scene, sizes size, twins *t) {
         d->constants.share_workers = size.share;
     }
     if (size.bytes)
-        d->list_bytes = size.bytes;
+        d->band_bytes = size.bytes;
 }
 
 /* One frame of a built-in scene and its lists. */

@@ -39,7 +39,7 @@ static vk_facts facts_for(const noc_render_params *p, bool map, int history, fra
                        .blocks_x = 80,
                        .blocks_y = 45,
                        .tile_words = noc_vk_tile_words(2),
-                       .list_bytes = 64 << 20 };
+                       .band_bytes = 64 << 20 };
 }
 
 /* All steps of a frame, with their barriers. */
@@ -61,6 +61,7 @@ static void check_barriers(const noc_render_params *p, const noc_plan *plan, int
     vk_facts facts = facts_for(p, map, history, &c);
     facts.views = plans % 2; /* what steps gather for views has barriers, too */
     facts.panes = plans / 2 % 2;
+    facts.band_bytes = plans / 4 % 8 ? facts.band_bytes : 1 << 20; /* bands of rays, too */
     model m = { 0 };
     (void)surfaces;
     plans++;
@@ -85,6 +86,7 @@ static void check_each_barrier(const noc_render_params *p, const noc_plan *plan,
     vk_facts facts = facts_for(p, map, history, &c);
     facts.views = noticed / 16 % 2;
     facts.panes = noticed / 32 % 2;
+    facts.band_bytes = noticed / 64 % 16 ? facts.band_bytes : 1 << 20;
     (void)surfaces;
     if (p->passes != 2 || history > 0)
         return;

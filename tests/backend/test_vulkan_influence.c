@@ -72,7 +72,7 @@ static void open_with(const noc_scene *scene, uint32_t workers, size_t bytes, tw
     open_twins(scene, true, messages, t);
     vk_device *d = gpu_of(t)->device;
     d->constants.list_workers = workers ? workers : d->constants.list_workers;
-    d->list_bytes = bytes ? bytes : d->list_bytes;
+    d->band_bytes = bytes ? bytes : d->band_bytes;
 }
 
 /* A word of each tile of the picture's only band. */

@@ -237,7 +237,7 @@ static noc_scene *a_floor(void) {
     return s;
 }
 
-/* A square picture is refused with these words, and a small one is rendered afterwards. */
+/* A square picture is refused with these words, and one of the size that they name is rendered afterwards. */
 static void expect_no_room(int side, const char *what, const char *needs, const char *has) {
     noc_scene *scene = a_floor();
     noc_render_params p = noc_render_default_params();
@@ -248,9 +248,18 @@ static void expect_no_room(int side, const char *what, const char *needs, const 
     p.method = NOC_METHOD_HEADLIGHT;
     p.width = p.height = side;
     assert_int_equal(noc_view_render(v, &camera, &p, NULL), NOC_ERR_MEMORY);
+    const char *fits = strstr(told, " would fit)");
+    while (fits && *fits != '(')
+        fits--;
+    assert_true(fits && sscanf(fits, "(%d x %d would", &p.width, &p.height) == 2);
+    if (strstr(told, "this machine has")) /* which is not the device that is limited here */
+        p.width = p.height = 64;
     EXPECT_TOLD(what, what, needs, has);
     assert_int_equal(fault.memory, before);
-    p.width = p.height = 64;
+    assert_in_range(p.width, 64, side - 1);
+    assert_int_equal(p.height, p.width);
+    p.width = NOC_MIN(p.width, 1200); /* where the machine has much, that takes long */
+    p.height = NOC_MIN(p.height, 1200);
     assert_int_equal(noc_view_render(v, &camera, &p, NULL), NOC_OK);
     noc_view_destroy(v);
     noc_device_destroy(device);
@@ -266,11 +275,11 @@ static void pictures_beyond_the_heap(void **state) {
     fake.heap = (VkDeviceSize)200 << 20;
     fake.budget = (VkDeviceSize)150 << 20;
     fake.used = (VkDeviceSize)50 << 20;
-    expect_no_room(1200, "vulkan: a picture of 1200 x 1200, ", " MB: out of device memory",
+    expect_no_room(1200, "vulkan: a picture of 1200 x 1200 (", " MB: out of device memory",
                    "105 MB of 210 MB are free (");
-    expect_no_room(30000, "30000 x 30000", " GB", "");  /* where the machine has enough for its copy, as above */
-    fake.without = VK_EXT_MEMORY_BUDGET_EXTENSION_NAME; /* then all but what this device has taken counts as free */
-    expect_no_room(1200, "vulkan: a picture of 1200 x 1200, ", " MB: out of device memory", " of 210 MB are free (");
+    expect_no_room(30000, "30000 x 30000 (", " GB", ""); /* where the machine has enough for its copy, as above */
+    fake.without = VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;  /* then all but what this device has taken counts as free */
+    expect_no_room(1200, "vulkan: a picture of 1200 x 1200 (", " MB: out of device memory", " of 210 MB are free (");
 }
 
 static void buffers_beyond_what_is_given_at_once(void **state) {
@@ -278,10 +287,42 @@ static void buffers_beyond_what_is_given_at_once(void **state) {
     if (!has_vulkan())
         skip();
     fake.piece = (VkDeviceSize)64 << 20;
-    expect_no_room(1600, "vulkan: a picture of 1600 x 1600, ", " MB: the device gives 67", " at once (");
+    expect_no_room(1600, "vulkan: a picture of 1600 x 1600 (", " MB: the device gives 67", " at once (");
     as_it_is();
     fake.buffer = (VkDeviceSize)64 << 20;
-    expect_no_room(1600, "vulkan: a picture of 1600 x 1600, ", " MB: the device gives 67", " at once (");
+    expect_no_room(1600, "vulkan: a picture of 1600 x 1600 (", " MB: the device gives 67", " at once (");
+}
+
+/* What one row of tiles takes grows with the picture's width, and is not cut: a width that fits is named, and does. */
+static void scratch_beyond_what_is_given_at_once(void **state) {
+    int wide = 0;
+    (void)state;
+    if (!has_vulkan())
+        skip();
+    fake.buffer = (VkDeviceSize)64 << 20;
+    noc_scene *scene = a_floor();
+    noc_render_params p = noc_render_default_params();
+    noc_device *device = open_vulkan();
+    noc_view *v = noc_view_create(device, scene);
+    assert_non_null(v);
+    ((vk_device *)device->state)->band_bytes = 1;
+    p.method = NOC_METHOD_RIS;
+    p.candidates = NOC_CANDIDATES_INFLUENCE;
+    p.draws = 1024;
+    p.width = 320;
+    p.height = 16;
+    assert_int_equal(noc_view_render(v, &camera, &p, NULL), NOC_ERR_MEMORY);
+    const char *named = strstr(told, "one that is ");
+    assert_true(named && sscanf(named, "one that is %d wide would fit (", &wide) == 1);
+    EXPECT_TOLD("scratch", "vulkan: a picture of 320 x 16 with these options needs ", " at once, the device has 67");
+    assert_in_range(wide, 160, 304);
+    p.width = wide;
+    assert_int_equal(noc_view_render(v, &camera, &p, NULL), NOC_OK);
+    noc_view_destroy(v);
+    noc_device_destroy(device);
+    noc_scene_destroy(scene);
+    expect_silence("scratch");
+    expect_nothing_left("scratch");
 }
 
 /* ---- many models ---- */
@@ -442,6 +483,7 @@ int main(void) {
         cmocka_unit_test_setup(devices_that_do_not_open, start),
         cmocka_unit_test_setup(pictures_beyond_the_heap, start),
         cmocka_unit_test_setup(buffers_beyond_what_is_given_at_once, start),
+        cmocka_unit_test_setup(scratch_beyond_what_is_given_at_once, start),
         cmocka_unit_test_setup(models_share_allocations, start),
         cmocka_unit_test_setup(a_pipe_in_place_of_the_cache, start),
         cmocka_unit_test_setup(a_cache_beyond_what_is_read, start),

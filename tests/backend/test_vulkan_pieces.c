@@ -65,21 +65,28 @@ static void expect_same_counts(const char *what, noc_view *a, noc_view *b) {
         fail_msg("%s: %zu rays, not %zu", what, (size_t)other.rays_shadow, (size_t)one.rays_shadow);
 }
 
-static noc_render_params params_of(noc_method method, noc_candidates candidates) {
+static noc_render_params params_of(noc_method method, noc_candidates candidates, noc_bias bias) {
     noc_render_params p = all_kinds_params(method, false);
     p.candidates = candidates;
+    p.bias = bias ? bias : p.bias;
     p.height = 42; /* the last row of tiles has three rows of blocks, the last of which is cut */
     return p;
 }
 
-/* Returns how often the caller of the last frame was asked. */
-static int same_as_whole(const char *what, const noc_scene *scene, const noc_render_params *p) {
+/* bytes: that a band of the cut one may take. Returns how often the caller of the last frame was asked. */
+static int same_as_whole(const char *what, const noc_scene *scene, const noc_render_params *p, size_t bytes) {
+    size_t *band = &((vk_device *)device->state)->band_bytes, before = *band;
     noc_view *whole = noc_view_create(device, scene), *cut = noc_view_create(device, scene);
     caller c = { 0 };
     assert_true(whole && cut);
     for (int f = 0; f < FRAMES; f++) {
         assert_int_equal(noc_view_render(whole, &camera, p, NULL), NOC_OK);
+        *band = bytes ? bytes : before;
         assert_int_equal(render_cut(cut, p, &c), NOC_OK);
+        *band = before;
+        const vk_picture *b = &((const vk_view *)cut->state)->b;
+        if (bytes && p->candidates != NOC_CANDIDATES_LISTS)
+            assert_in_range(b->ray_room, 1, (size_t)b->blocks_x * b->blocks_y * BLOCK);
         expect_same_pictures(what, whole, cut);
         expect_same_counts(what, whole, cut);
     }
@@ -92,15 +99,19 @@ static const struct {
     const char *name;
     noc_method method;
     noc_candidates candidates;
-    bool panes;
+    noc_bias bias;
+    bool panes, in_space;
 } kinds[] = {
-    { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, false },
-    { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, false },
-    { "uniform", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, true },
-    { "light-bvh", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, false },
-    { "influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, false },
-    { "lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, true },
-    { "lists, reuse", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, false },
+    { "headlight", NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, 0, false, true },
+    { "light-bvh", NOC_METHOD_RIS, NOC_CANDIDATES_LIGHT_BVH, 0, false, true },
+    { "pairwise", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE, true, true },
+    { "influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, NOC_BIAS_PAIRWISE, false, true },
+    { "lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, 0, true, true },
+    { "lists, reuse", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, NOC_BIAS_PAIRWISE, false, true },
+    { "lists, reuse in time", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, NOC_BIAS_MIS, true, false },
+    { "mis", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_MIS, false, true },
+    { "counted", NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, NOC_BIAS_COUNTED, true, true },
+    { "reference", NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, 0, true, true },
 };
 
 static void pieces_have_the_same_bits(void **state) {
@@ -108,8 +119,9 @@ static void pieces_have_the_same_bits(void **state) {
     (void)state;
     noc_scene *scenes[2] = { all_kinds_with(false, &car), all_kinds_with(true, &car) };
     for (size_t i = 0; i < NOC_COUNT(kinds); i++) {
-        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
-        int calls = same_as_whole(kinds[i].name, scenes[kinds[i].panes], &p);
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates, kinds[i].bias);
+        p.spatial = kinds[i].in_space;
+        int calls = same_as_whole(kinds[i].name, scenes[kinds[i].panes], &p, 0);
         print_message("# %s: asked %d times\n", kinds[i].name, calls);
         assert_true(calls > 2 * 11); /* at least two passes a row of blocks */
     }
@@ -117,19 +129,19 @@ static void pieces_have_the_same_bits(void **state) {
     noc_scene_destroy(scenes[1]);
 }
 
-/* Bands of a picture are cut, too. */
+/* Bands of a picture are cut, too, and have the bits of one that has no bands. No more rays are kept than the picture
+ * has pixels. */
 static void pieces_of_bands(void **state) {
-    size_t *bytes = &((vk_device *)device->state)->list_bytes, before = *bytes;
     int car;
     (void)state;
-    noc_scene *scene = all_kinds(&car);
-    *bytes = 1;
-    for (size_t i = 4; i < NOC_COUNT(kinds); i++) {
-        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
-        same_as_whole(kinds[i].name, scene, &p);
+    noc_scene *scenes[2] = { all_kinds_with(false, &car), all_kinds_with(true, &car) };
+    for (size_t i = 3; i < NOC_COUNT(kinds); i++) {
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates, kinds[i].bias);
+        p.spatial = kinds[i].in_space;
+        same_as_whole(kinds[i].name, scenes[kinds[i].panes], &p, 1);
     }
-    *bytes = before;
-    noc_scene_destroy(scene);
+    noc_scene_destroy(scenes[0]);
+    noc_scene_destroy(scenes[1]);
 }
 
 /* The mean stays as it was, and the next frames are those of a view that begins. */
@@ -137,8 +149,9 @@ static void broken_off_between_pieces(void **state) {
     int car;
     (void)state;
     noc_scene *scene = all_kinds(&car);
-    for (size_t i = 5; i < NOC_COUNT(kinds); i++) {
-        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates);
+    for (size_t i = 4; i < 6; i++) {
+        noc_render_params p = params_of(kinds[i].method, kinds[i].candidates, kinds[i].bias);
+        p.spatial = kinds[i].in_space;
         noc_view *whole = noc_view_create(device, scene), *cut = noc_view_create(device, scene);
         caller c = { 0 };
         int last = 1;
@@ -164,7 +177,7 @@ static void broken_off_between_pieces(void **state) {
 
 /* Short frames are not cut, nor waited for: those of which that is known. */
 static void short_frames_are_whole(void **state) {
-    noc_render_params p = params_of(NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM);
+    noc_render_params p = params_of(NOC_METHOD_HEADLIGHT, NOC_CANDIDATES_UNIFORM, 0);
     int car;
     (void)state;
     noc_scene *scene = all_kinds(&car);
@@ -185,7 +198,7 @@ static void short_frames_are_whole(void **state) {
 
 /* The trace floor of a frame is cut as the frame is, and either half can be broken off. */
 static void floors_are_cut(void **state) {
-    noc_render_params p = params_of(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS);
+    noc_render_params p = params_of(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, 0);
     int car, last = 1;
     (void)state;
     noc_scene *scene = all_kinds_with(true, &car);
@@ -207,7 +220,7 @@ static void floors_are_cut(void **state) {
 /* More steps with rays than a command buffer has room for. */
 static void a_floor_of_many_steps(void **state) {
     enum { LIGHTS = 1024 };
-    noc_render_params p = params_of(NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM);
+    noc_render_params p = params_of(NOC_METHOD_REFERENCE, NOC_CANDIDATES_UNIFORM, 0);
     noc_trace_floor floor = { -1, -1 };
     (void)state;
     noc_scene *s = noc_scene_create(NULL);

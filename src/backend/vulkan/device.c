@@ -190,7 +190,7 @@ noc_status noc_vk_device_create(const noc_device_params *params, int number, noc
     d->log = log;
     d->params = *params;
     d->constants = (vk_constants){ .list_workers = 256, .share_workers = 64 };
-    d->list_bytes = (size_t)256 << 20;
+    d->band_bytes = (size_t)256 << 20;
     d->keep_seconds = 10;
     d->pool_most = UINT32_MAX;
     pthread_mutex_init(&d->lock, NULL);

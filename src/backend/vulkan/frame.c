@@ -79,7 +79,7 @@ static vk_facts facts_of(const vk_view *v, const noc_frame *frame) {
                        .blocks_x = v->b.blocks_x,
                        .blocks_y = v->b.blocks_y,
                        .tile_words = tile_words(v, frame->plan),
-                       .list_bytes = v->device->list_bytes,
+                       .band_bytes = v->device->band_bytes,
                        .sky = frame->params->sky > 0 || frame->constants.flags & FRAME_MAP_LIGHTS };
 }
 

@@ -66,6 +66,12 @@ static void find_room(const vk_device *d, VkDeviceSize *all, VkDeviceSize *free)
     *free = most > used ? most - used : 0;
 }
 
+VkDeviceSize noc_vk_free_bytes(const vk_device *d) {
+    VkDeviceSize all, free;
+    find_room(d, &all, &free);
+    return NOC_MIN(free, all);
+}
+
 noc_status noc_vk_check_room(vk_device *d, VkDeviceSize bytes, VkDeviceSize given_back, const char *what) {
     VkDeviceSize all, free;
     char need[32], has[32], left[32];

@@ -15,6 +15,8 @@ typedef struct scheduling {
     bool no_memory;
     vk_step lost; /* stands in where memory is refused */
     noc_pass pass;
+    uint32_t first_row, rows; /* of the steps that are added, as in vk_step */
+    bool band;
 } scheduling;
 
 static uint32_t set_bit(int set) { return R(SET) << set; }
@@ -56,6 +58,9 @@ static vk_step *add(scheduling *s, vk_shader shader, uint32_t reads, uint32_t wr
                      .slots = 1,
                      .source = s->stage ? s->stage->source : 0,
                      .target = s->stage ? s->stage->target : 0,
+                     .first_row = s->first_row,
+                     .rows = s->rows,
+                     .band = s->band,
                      .pass = s->pass };
     if (array_push(s->steps, step))
         return &s->steps->data[s->steps->len - 1];
@@ -73,13 +78,12 @@ static vk_step *trace(scheduling *s, int slots, bool past) {
 }
 
 /* Finds what surfaces let through on the way of rays that the step before has answered. */
-static void pass_panes(scheduling *s, int slots, bool band) {
+static void pass_panes(scheduling *s, int slots) {
     if (!s->facts->panes)
         return;
     vk_step *step = add(s, VK_SHADER_trace_through, R(RAYS) | R(ANSWERS), R(THROUGH));
     step->domain = VK_DOMAIN_RAYS;
     step->slots = slots;
-    step->band = band;
 }
 
 /* What shading reads of its rays. */
@@ -125,31 +129,61 @@ static void resolve(scheduling *s) {
     add(s, VK_SHADER_resolve_use, R(ANSWERS) | target, target);
 }
 
-/* A pixel's combination with `neighbours` others; reads: what it looks at. */
-static void combine(scheduling *s, vk_shader ask, vk_shader use, uint32_t reads, uint32_t dimension, int neighbours,
-                    bool past) {
-    const frame_constants *c = s->facts->constants;
-    bool rays = c->flags & FRAME_BIAS_RAYS;
-    if (rays) {
-        vk_step *step = add(s, ask, reads, R(RAYS) | R(ANSWERS));
-        step->dimension = dimension;
-        step->slots = c->bias == BIAS_PAIRWISE ? 1 : neighbours;
-        trace(s, step->slots, past);
+/* Rows of blocks whose rays, so many a pixel, have room at once: one ray of each pixel has, in any case. */
+static uint32_t ray_rows(const vk_facts *f, int slots) {
+    enum { RAY_BYTES = sizeof(rayblock) / BLOCK + 4 + 4 }; /* with its answer and its transmittance */
+    size_t row = (size_t)f->blocks_x * BLOCK * (size_t)slots, pixels = (size_t)f->blocks_x * f->blocks_y * BLOCK;
+    return (uint32_t)NOC_CLAMP(NOC_MAX(pixels, f->band_bytes / RAY_BYTES) / row, (size_t)1, (size_t)f->blocks_y);
+}
+
+/* A pixel's combination with others. */
+typedef struct combining {
+    vk_shader ask, use;
+    uint32_t reads, dimension;
+    int rays; /* a pixel; 0: none */
+    bool past;
+} combining;
+
+static void combine_band(scheduling *s, const combining *c) {
+    if (c->rays) {
+        vk_step *step = add(s, c->ask, c->reads, R(RAYS) | R(ANSWERS));
+        step->dimension = c->dimension;
+        trace(s, c->rays, c->past);
     }
-    add(s, use, reads | (rays ? R(ANSWERS) : 0), set_bit(s->stage->target))->dimension = dimension;
+    add(s, c->use, c->reads | (c->rays ? R(ANSWERS) : 0), set_bit(s->stage->target))->dimension = c->dimension;
+}
+
+/* neighbours: that a pixel has. */
+static void combine(scheduling *s, combining c, int neighbours) {
+    const frame_constants *frame = s->facts->constants;
+    if (frame->flags & FRAME_BIAS_RAYS)
+        c.rays = frame->bias == BIAS_PAIRWISE ? 1 : neighbours;
+    scheduling all = *s; /* the picture, or a band of it in turn */
+    uint32_t end = all.first_row + (all.rows ? all.rows : s->facts->blocks_y);
+    uint32_t band = c.rays ? ray_rows(s->facts, c.rays) : end;
+    s->band = true;
+    for (s->first_row = all.first_row; s->first_row < end; s->first_row += band) {
+        s->rows = NOC_MIN(band, end - s->first_row);
+        combine_band(s, &c);
+    }
+    s->first_row = all.first_row;
+    s->rows = all.rows;
+    s->band = all.band;
     if (s->stage->resolve_visibility)
         resolve(s);
 }
 
 static void temporal(scheduling *s) {
     uint32_t reads = R(SURFACES) | R(PREVIOUS) | set_bit(s->stage->source) | set_bit(s->stage->target);
+    combining c = { VK_SHADER_temporal_ask, VK_SHADER_temporal_use, reads, DIM_TEMPORAL, 0, s->facts->past };
     if (s->facts->history)
-        combine(s, VK_SHADER_temporal_ask, VK_SHADER_temporal_use, reads, DIM_TEMPORAL, 1, s->facts->past);
+        combine(s, c, 1);
 }
 
 static void spatial(scheduling *s) {
-    combine(s, VK_SHADER_spatial_ask, VK_SHADER_spatial_use, R(SURFACES) | set_bit(s->stage->source),
-            DIM_SPATIAL + 64u * (uint32_t)s->stage->round, (int)s->facts->constants->neighbours, false);
+    uint32_t reads = R(SURFACES) | set_bit(s->stage->source), dimension = DIM_SPATIAL + 64u * (uint32_t)s->stage->round;
+    combining c = { VK_SHADER_spatial_ask, VK_SHADER_spatial_use, reads, dimension, 0, false };
+    combine(s, c, (int)s->facts->constants->neighbours);
 }
 
 static void emitters(scheduling *s) { add(s, VK_SHADER_emitters, R(SURFACES), R(COLOUR)); }
@@ -158,7 +192,7 @@ static void shade(scheduling *s) {
     bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
     if (rays) {
         ask_samples(s, s->facts->panes); /* how much arrives is not known of any */
-        pass_panes(s, 1, false);
+        pass_panes(s, 1);
     }
     add(s, VK_SHADER_shade_use, R(SURFACES) | R(COLOUR) | set_bit(s->stage->target) | (rays ? answers(s) : 0),
         R(COLOUR));
@@ -169,48 +203,41 @@ static size_t reference_words(const vk_facts *f) {
     return (f->lights + REFERENCE_CHUNK - 1) / REFERENCE_CHUNK + 1 + 2 * (size_t)f->constants->rays;
 }
 
-/* Rows of blocks that are done at once, so that scratch stays bounded. */
+/* Rows of blocks that are done at once, so that scratch and rays stay bounded. */
 static uint32_t band_rows(const vk_facts *f, size_t words) {
     enum { SCRATCH_BYTES = 64 << 20 };
-    size_t row = (size_t)f->blocks_x * BLOCK * words * 4;
-    return (uint32_t)NOC_CLAMP(SCRATCH_BYTES / row, (size_t)1, (size_t)f->blocks_y);
+    size_t row = (size_t)f->blocks_x * BLOCK * words * 4, rows = NOC_MIN((size_t)SCRATCH_BYTES, f->band_bytes) / row;
+    return (uint32_t)NOC_CLAMP(rows, (size_t)1, (size_t)ray_rows(f, VK_REFERENCE_RAYS));
 }
 
-static void reference_rays(scheduling *s, uint32_t first, uint32_t first_row, uint32_t rows) {
+static void reference_rays(scheduling *s, uint32_t first) {
     bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
     size_t from = s->steps->len;
     if (rays) {
-        vk_step *ask = add(s, VK_SHADER_reference_ask, R(SURFACES) | R(SCRATCH), R(RAYS) | R(ANSWERS));
-        ask->slots = VK_REFERENCE_RAYS;
+        add(s, VK_SHADER_reference_ask, R(SURFACES) | R(SCRATCH), R(RAYS) | R(ANSWERS));
         trace(s, VK_REFERENCE_RAYS, false);
-        pass_panes(s, VK_REFERENCE_RAYS, false);
+        pass_panes(s, VK_REFERENCE_RAYS);
     }
     add(s, VK_SHADER_reference_use, R(SURFACES) | R(SCRATCH) | R(COLOUR) | (rays ? answers(s) : 0), R(COLOUR));
-    for (size_t i = from; i < s->steps->len; i++) {
+    for (size_t i = from; i < s->steps->len; i++)
         s->steps->data[i].first = first;
-        s->steps->data[i].first_row = first_row;
-        s->steps->data[i].rows = rows;
-    }
 }
 
 static void shade_all(scheduling *s) {
     const vk_facts *f = s->facts;
     uint32_t chunks = (f->lights + REFERENCE_CHUNK - 1) / REFERENCE_CHUNK, rays = f->constants->rays;
     uint32_t band = band_rows(f, reference_words(f));
-    for (uint32_t row = 0; row < f->blocks_y; row += band) {
-        uint32_t rows = NOC_MIN(band, f->blocks_y - row);
-        for (uint32_t i = 0; f->lights > rays && i < chunks; i += VK_REFERENCE_CHUNKS) {
-            vk_step *sum = add(s, VK_SHADER_reference_sums, R(SURFACES), R(SCRATCH));
-            sum->first = i;
-            sum->first_row = row;
-            sum->rows = rows;
-        }
-        vk_step *entries = add(s, VK_SHADER_reference_entries, R(SURFACES) | R(SCRATCH), R(SCRATCH));
-        entries->first_row = row;
-        entries->rows = rows;
+    s->band = true;
+    for (s->first_row = 0; s->first_row < f->blocks_y; s->first_row += band) {
+        s->rows = NOC_MIN(band, f->blocks_y - s->first_row);
+        for (uint32_t i = 0; f->lights > rays && i < chunks; i += VK_REFERENCE_CHUNKS)
+            add(s, VK_SHADER_reference_sums, R(SURFACES), R(SCRATCH))->first = i;
+        add(s, VK_SHADER_reference_entries, R(SURFACES) | R(SCRATCH), R(SCRATCH));
         for (uint32_t i = 0; i < NOC_MIN(rays, f->lights); i += VK_REFERENCE_RAYS)
-            reference_rays(s, i, row, rows);
+            reference_rays(s, i);
     }
+    s->first_row = s->rows = 0;
+    s->band = false;
 }
 
 static void headlight(scheduling *s) { add(s, VK_SHADER_headlight, R(SURFACES) | R(COLOUR), R(COLOUR)); }
@@ -222,7 +249,7 @@ static void sky(scheduling *s) {
         if (!s->facts->sky)
             return;
         trace(s, 1, false);
-        pass_panes(s, 1, false);
+        pass_panes(s, 1);
         add(s, VK_SHADER_sky_use, R(SURFACES) | R(COLOUR) | R(RAYS) | answers(s), R(COLOUR));
     }
 }
@@ -252,7 +279,7 @@ static size_t list_row_words(const noc_plan *plan, const vk_facts *f) {
 static uint32_t list_band(const noc_plan *plan, const vk_facts *f) {
     size_t rays = (size_t)f->blocks_x * 4 * BLOCK * (size_t)list_slots(plan, f);
     size_t row = 4 * list_row_words(plan, f) + rays * (sizeof(rayblock) / BLOCK + 4);
-    return 4 * (uint32_t)NOC_CLAMP(f->list_bytes / row, (size_t)1, (size_t)noc_vk_tiles(f->blocks_y));
+    return 4 * (uint32_t)NOC_CLAMP(f->band_bytes / row, (size_t)1, (size_t)noc_vk_tiles(f->blocks_y));
 }
 
 static vk_step *add_list(scheduling *s, vk_shader shader, vk_domain domain, uint32_t reads, uint32_t writes) {
@@ -294,8 +321,10 @@ static void share_rays(scheduling *s) {
 static void trace_shared(scheduling *s) {
     bool rays = s->facts->constants->flags & FRAME_FINAL_RAY;
     if (rays) {
-        trace(s, list_slots(s->plan, s->facts), false)->band = true;
-        pass_panes(s, list_slots(s->plan, s->facts), true);
+        s->band = true;
+        trace(s, list_slots(s->plan, s->facts), false);
+        pass_panes(s, list_slots(s->plan, s->facts));
+        s->band = false;
     }
     add_list(s, VK_SHADER_list_use, VK_DOMAIN_PIXELS, rays ? R(ANSWERS) : 0,
              R(SCRATCH) | set_bit(s->stage->target) | (s->plan->learns ? R(OBSERVED) : 0));
@@ -370,7 +399,7 @@ static void schedule_pass(scheduling *s, noc_pass pass) {
 static uint32_t band_of(const noc_plan *plan, const vk_facts *f) {
     if (plan->candidates == NOC_CANDIDATES_LISTS)
         return list_band(plan, f);
-    return 4 * (uint32_t)NOC_CLAMP(f->list_bytes / (4 * found_row_words(plan, f)), (size_t)1,
+    return 4 * (uint32_t)NOC_CLAMP(f->band_bytes / (4 * found_row_words(plan, f)), (size_t)1,
                                    (size_t)noc_vk_tiles(f->blocks_y));
 }
 
@@ -388,15 +417,12 @@ static int schedule_bands(scheduling *s, int first) {
     }
     if (s->plan->candidates == NOC_CANDIDATES_INFLUENCE && f->lights)
         presample(s, NOC_PASS_CANDIDATES_INFLUENCE);
-    for (uint32_t row = 0; row < f->blocks_y; row += band) {
-        size_t from = s->steps->len;
+    for (s->first_row = 0; s->first_row < f->blocks_y; s->first_row += band) {
+        s->rows = NOC_MIN(band, f->blocks_y - s->first_row);
         for (int i = first; i < end; i++)
             schedule_pass(s, s->stage->passes[i]);
-        for (size_t i = from; i < s->steps->len; i++) {
-            s->steps->data[i].first_row = row;
-            s->steps->data[i].rows = NOC_MIN(band, f->blocks_y - row);
-        }
     }
+    s->first_row = s->rows = 0;
     return end;
 }
 

@@ -69,7 +69,7 @@ typedef struct vk_facts {
     bool panes;   /* surfaces let light through */
     uint32_t lights, blocks_x, blocks_y;
     uint32_t tile_words; /* lists: of a tile in scratch */
-    size_t list_bytes;   /* that a band of tiles may take: lists, influence */
+    size_t band_bytes;   /* that scratch and rays of a band may take */
 } vk_facts;
 
 typedef NOC_ARRAY(vk_step) vk_steps;

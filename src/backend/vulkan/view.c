@@ -2,6 +2,9 @@
 #include "backend/vulkan/vulkan.h"
 #include "core/presample_limits.h"
 
+#include <math.h>
+#include <nocturne/text.h>
+
 /* Bytes a pixel of each kind of buffer, by the records that shaders use. */
 enum {
     SURFACE_BYTES = sizeof(gblock) / BLOCK,
@@ -31,10 +34,30 @@ static void free_picture(vk_device *d, vk_picture *b) {
 
 static size_t slots_of(const vk_picture *b) { return (size_t)b->blocks_x * b->blocks_y * BLOCK; }
 
+/* What a picture takes whatever its method is, without reservoirs. */
+enum { FIXED_BYTES = 2 * SURFACE_BYTES + 2 * COLOUR_BYTES + COVERAGE_BYTES + RAY_BYTES + ANSWER_BYTES + HIT_BYTES };
+enum { PICTURE_TEXT = 96 };
+
+/* A picture of this size, for messages: with one of its shape that the device has memory for, where it has not enough
+ * for it. An eighth is left to what depends on the plan. given_back: bytes that this view frees before. */
+static void describe_picture(const vk_view *v, int width, int height, int sets, VkDeviceSize given_back,
+                             char text[PICTURE_TEXT]) {
+    const vk_device *d = v->device;
+    double room = (double)(noc_vk_free_bytes(d) + given_back) * 7 / 8 / (FIXED_BYTES + sets * (RESERVOIR_BYTES + 4));
+    double pixels = NOC_MIN(room, (double)d->largest / SURFACE_BYTES);
+    double scale = sqrt(pixels / ((double)width * (double)height));
+    int fits_wide = (int)(width * scale) & ~3, fits_high = (int)(height * scale) & ~3;
+    if (scale < 1 && fits_wide && fits_high)
+        noc_snprintf(text, PICTURE_TEXT, "a picture of %d x %d (%d x %d would fit)", width, height, fits_wide,
+                     fits_high);
+    else
+        noc_snprintf(text, PICTURE_TEXT, "a picture of %d x %d", width, height);
+}
+
 /* A buffer of the picture: `each` bytes a pixel. */
 static noc_status make(vk_view *v, size_t each, vk_buffer *out) {
-    char what[64];
-    noc_snprintf(what, sizeof(what), "a picture of %d x %d", v->b.width, v->b.height);
+    char what[PICTURE_TEXT];
+    describe_picture(v, v->b.width, v->b.height, v->b.sets, v->b.bytes, what);
     noc_status status = noc_vk_make_buffer(v->device, slots_of(&v->b) * each, 0, VK_PLACE_DEVICE, what, out);
     v->b.bytes += status == NOC_OK ? slots_of(&v->b) * each : 0;
     return status;
@@ -56,13 +79,12 @@ static noc_status make_picture(vk_view *v) {
 /* What the device must have for a picture of this size and the rays of its pixels. Other rays and scratch are a matter
  * of the plan. */
 static noc_status check_room(const vk_view *v, int width, int height, int sets) {
-    enum { FIXED_BYTES = 2 * SURFACE_BYTES + 2 * COLOUR_BYTES + COVERAGE_BYTES + RAY_BYTES + ANSWER_BYTES + HIT_BYTES };
     const vk_picture *b = &v->b;
     bool other = b->width != width || b->height != height;
     size_t pixels = (((size_t)width + 3) & ~(size_t)3) * (((size_t)height + 3) & ~(size_t)3);
     size_t each = (other ? FIXED_BYTES : 0) + (size_t)(sets - (other ? 0 : b->sets)) * (RESERVOIR_BYTES + 4);
-    char what[64];
-    noc_snprintf(what, sizeof(what), "a picture of %d x %d", width, height);
+    char what[PICTURE_TEXT];
+    describe_picture(v, width, height, sets, b->bytes, what);
     return noc_vk_check_room(v->device, pixels * each, other ? b->bytes : 0, what);
 }
 
@@ -139,13 +161,32 @@ noc_status noc_vk_fit_buffer(vk_view *v, size_t bytes, const char *what, vk_buff
     return status == NOC_OK ? noc_vk_make_buffer(v->device, bytes, 0, VK_PLACE_DEVICE, what, b) : status;
 }
 
+/* Scratch is that of one band: where it is the least that there is, it grows with the picture's width alone. */
+static noc_status check_scratch(const vk_view *v, size_t scratch) {
+    enum { A_TILE = 16, SPARE = 8 << 20 }; /* px; bytes that do not depend on the width */
+    VkDeviceSize most = NOC_MIN(v->device->largest, noc_vk_free_bytes(v->device) + v->scratch.bytes);
+    char need[32], has[32];
+    if (scratch <= NOC_MAX(most, v->device->band_bytes))
+        return NOC_OK;
+    int wide = (int)((double)v->b.width * ((double)most - SPARE) / (double)scratch) / A_TILE * A_TILE;
+    return noc_error(
+        v->log, NOC_ERR_MEMORY,
+        "vulkan: a picture of %d x %d with these options needs %s at once, the device has %s: one that is %d "
+        "wide would fit (%s)",
+        v->b.width, v->b.height, noc_text_bytes(need, scratch), noc_text_bytes(has, most), NOC_MAX(wide, A_TILE),
+        v->device->name);
+}
+
 noc_status noc_vk_view_fit(vk_view *v, size_t rays, size_t scratch) {
     vk_picture *b = &v->b;
-    noc_status status = NOC_OK;
-    if (rays > v->device->rays.maxRayDispatchInvocationCount)
+    noc_status status = check_scratch(v, scratch);
+    size_t most = v->device->rays.maxRayDispatchInvocationCount;
+    if (status != NOC_OK)
+        return status;
+    if (rays > most) /* one a pixel: bands have no more */
         return noc_error(v->log, NOC_ERR_MEMORY,
-                         "vulkan: %zu rays of a frame of %d x %d are more than the device takes", rays, b->width,
-                         b->height);
+                         "vulkan: a picture of %d x %d has more pixels than the device traces rays at once, %zu",
+                         b->width, b->height, most);
     if (b->ray_room < rays || (v->scene->lets_through && !b->through.bytes))
         status = fit_rays(v, NOC_MAX(rays, b->ray_room));
     if (status == NOC_OK)

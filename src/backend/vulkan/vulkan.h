@@ -95,7 +95,7 @@ typedef struct vk_device {
     vk_buffer table;                             /* shader binding table, of all ray tracing pipelines */
     double compile_seconds, compile_cpu_seconds; /* of all pipelines so far */
     vk_constants constants;
-    size_t list_bytes;   /* vk_facts */
+    size_t band_bytes;   /* vk_facts */
     uint32_t pool_most;  /* influence: lights that the pool of a band has room for at most */
     double keep_seconds; /* between readings of a mean that nobody asks for */
     size_t bytes;        /* allocated */
@@ -361,6 +361,7 @@ void noc_vk_free_buffer(vk_device *d, vk_buffer *b); /* an empty one is allowed;
 /* Reports what needs more bytes than the device has free, once so many are given back. Of less than 64 MB the driver is
  * the judge: what it tells is an estimate. */
 noc_status noc_vk_check_room(vk_device *d, VkDeviceSize bytes, VkDeviceSize given_back, const char *what);
+VkDeviceSize noc_vk_free_bytes(const vk_device *d); /* as far as the driver tells */
 noc_status noc_vk_memory_create(vk_device *d);
 void noc_vk_memory_destroy(vk_device *d);
 /* Commands that come after all that was submitted before, and before what is submitted later; the device is locked.

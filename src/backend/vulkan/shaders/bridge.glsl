@@ -187,6 +187,9 @@ void count_one(uint kind, uint at) { atomicAdd(HERE.counters.at[kind * VK_COUNTE
 
 /* ---- rays ---- */
 
+/* The pixel in a band whose rays are kept for it alone. */
+uint slot_in_band(place p) { return p.slot - HERE.first_row * FRAME.blocks_x * BLOCK; }
+
 /* Segment i of a pixel, o to o + d; without `on` there is none. Shaders of other rays than shadow rays define
  * UNCOUNTED. */
 void ray_put(place p, uint i, bool on, vec3 o, vec3 d) {

@@ -25,7 +25,7 @@ uint ray_field(uint ray, uint field) { return PIXEL_RAYS + ray * RAY_WORDS + fie
 
 void find_pixel(place p) {
     tile_ = tile_of(p.block % FRAME.blocks_x, p.block / FRAME.blocks_x);
-    pixel_ = p.slot - HERE.first_row * FRAME.blocks_x * BLOCK;
+    pixel_ = slot_in_band(p);
 }
 
 uint entry_light(uint i) { return tile_load(TILE_LIGHT + i); }

@@ -4,8 +4,6 @@
 #include "core/shading.h"
 #include "surfaces.glsl"
 
-uint slots_of_band() { return FRAME.blocks_x * HERE.rows * BLOCK; }
-uint in_band(place p) { return p.slot - HERE.first_row * FRAME.blocks_x * BLOCK; }
 uint chunks() { return (HERE.light_count + REFERENCE_CHUNK - 1u) / REFERENCE_CHUNK; }
 
 uint pixel_; /* in the band */
@@ -16,12 +14,12 @@ bool light_shines(uint i) {
     light_record l = HERE.lights.at[i];
     return l.e[0] > 0.0 || l.e[1] > 0.0 || l.e[2] > 0.0;
 }
-void sum_put(uint chunk, float x) { HERE.scratch.at[chunk * slots_of_band() + pixel_] = floatBitsToUint(x); }
-float sum_load(uint chunk) { return uintBitsToFloat(HERE.scratch.at[chunk * slots_of_band() + pixel_]); }
+void sum_put(uint chunk, float x) { HERE.scratch.at[chunk * HERE.slots + pixel_] = floatBitsToUint(x); }
+float sum_load(uint chunk) { return uintBitsToFloat(HERE.scratch.at[chunk * HERE.slots + pixel_]); }
 
 /* How many entries a pixel has; then the words of entry i: its light and its weight. */
-uint count_word() { return chunks() * slots_of_band() + pixel_; }
-uint entry_word(uint i, uint word) { return (chunks() + 1u + 2u * i + word) * slots_of_band() + pixel_; }
+uint count_word() { return chunks() * HERE.slots + pixel_; }
+uint entry_word(uint i, uint word) { return (chunks() + 1u + 2u * i + word) * HERE.slots + pixel_; }
 void entry_put(bool on, uint light, float w) {
     if (!on || entries_ >= FRAME.rays)
         return;

@@ -10,7 +10,8 @@ void main() {
         return;
     place p = my_place();
     receiver r = receiver_at(HERE.surfaces, p.block, p.lane);
-    pixel_ = in_band(p);
+    pixel_ = slot_in_band(p);
+    p.slot = pixel_;
     uint count = HERE.scratch.at[count_word()];
     for (uint i = 0u; i < VK_REFERENCE_RAYS; i++) {
         uint entry = HERE.first + i;

@@ -9,7 +9,7 @@ void main() {
     if (!in_grid())
         return;
     place p = my_place();
-    pixel_ = in_band(p);
+    pixel_ = slot_in_band(p);
     entries_ = 0u;
     if (receives(receiver_at(HERE.surfaces, p.block, p.lane))) {
         surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());

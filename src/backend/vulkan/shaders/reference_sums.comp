@@ -11,7 +11,7 @@ void main() {
     place p = my_place();
     if (!receives(receiver_at(HERE.surfaces, p.block, p.lane)))
         return;
-    pixel_ = in_band(p);
+    pixel_ = slot_in_band(p);
     surf s = surf_at(HERE.surfaces, p.block, p.lane, eye_now());
     uint end = min(HERE.first + VK_REFERENCE_CHUNKS, chunks());
     for (uint i = HERE.first; i < end; i++)

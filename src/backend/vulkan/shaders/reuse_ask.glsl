@@ -2,7 +2,8 @@
 void main() {
     if (!in_grid())
         return;
-    place p = my_place();
+    place p = my_place(), q = p;
+    q.slot = slot_in_band(p);
     combination c = begin_combination(p);
     int asked = reuse_asked(neighbours_);
     for (int i = 0; i < asked; i++) {
@@ -14,6 +15,6 @@ void main() {
             receiver r = receiver_at(neighbour_surfaces_, slot / BLOCK, slot % BLOCK);
             s = shadow_segment(r.p, r.n, light_of_neighbours(c.held.light), c.held.u, c.held.v, HERE.ray_offset);
         }
-        ray_put(p, uint(i), ask, s.o, s.d);
+        ray_put(q, uint(i), ask, s.o, s.d);
     }
 }

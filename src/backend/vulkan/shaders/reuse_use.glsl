@@ -10,7 +10,7 @@ void main() {
         for (int i = 0; i < asked; i++) {
             float t = target_at(c, i);
             bool ask = rays && reuse_asks(c.held, i, t);
-            bool clear = ask && HERE.answers.at[uint(i) * HERE.slots + p.slot] == VK_ANSWER_CLEAR;
+            bool clear = ask && HERE.answers.at[uint(i) * HERE.slots + slot_in_band(p)] == VK_ANSWER_CLEAR;
             answer_[i] = reuse_answer(t, ask, clear);
         }
     }
