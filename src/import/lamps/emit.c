@@ -34,6 +34,16 @@ static noc_status lose(lamp_writer *w, const char *reason, const char *id) {
     return NOC_OK;
 }
 
+/* One that has something else where its coordinates should be: counted with that. */
+static noc_status lose_broken(lamp_writer *w, const char *id) {
+    char *told = noc_format("%.60s %.60s", id ? id : "", w->broken);
+    if (!told)
+        return noc_no_memory(w->sink->log, w->place);
+    noc_status status = lose(w, "lamp whose coordinates are not numbers", told);
+    free(told);
+    return status;
+}
+
 /* Of a table every row is noted, of tagged maps the lamps. Names with an @ are ours. */
 static void note(lamp_writer *w, const lamp_tag *tags, size_t count, bool lamp) {
     if (!lamp && !w->inventory && !w->strange)
@@ -64,8 +74,12 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
         geo_issue(w->sink->issues, GEO_SKIPPED, "point that is called something other than a lamp", lamp.id);
         return NOC_OK;
     }
+    if (w->broken)
+        return lose_broken(w, lamp.id);
     if (!isfinite(x) || !isfinite(y))
         return lose(w, "lamp without a place", lamp.id);
+    if (w->no_crs)
+        return lose(w, "lamp without a CRS, in a file that names several", lamp.id);
     if (w->geographic && !on_earth(x, y)) {
         w->off_earth++;
         w->exchangeable += on_earth(y, x);

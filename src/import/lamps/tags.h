@@ -217,6 +217,8 @@ typedef struct lamp_writer {
     geo_sink *sink;
     const char *place;      /* file, for messages */
     bool geographic;        /* x and y are degrees: checked to be on Earth */
+    const char *broken;     /* what the next feature has in place of coordinates; NULL: not known */
+    bool no_crs;            /* the next feature names no CRS, in a file of several */
     size_t features, lamps; /* looked at; emitted */
     size_t lost;            /* lamps in use without a place */
     size_t off_earth;       /* of them those whose degrees are no longitude and latitude */

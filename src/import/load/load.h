@@ -21,6 +21,7 @@ typedef struct source_crs {
     geo_crs *crs;            /* NULL: local metres */
     geo_transform *to_scene; /* NULL until the first coordinate, and for local metres */
     bool ready;              /* to_scene is made, if one is needed */
+    bool further;            /* the file had another before, in which the report has its extent */
     bool axes_decided, swap;
     int tries;
     double outside; /* degrees outside the CRS's area of use, of the last try */

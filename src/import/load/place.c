@@ -307,6 +307,11 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
         if (status)
             return status;
     }
+    if (!s->crs && r->im->scene_crs && *s->spelling)
+        return noc_error(r->log, NOC_ERR_FORMAT,
+                         "%s: the CRS \"%.60s\" is not understood, and %s has another (%s): say with --crs which one "
+                         "it is",
+                         path, s->spelling, r->im->placed_by, geo_crs_name(r->im->scene_crs));
     if (!s->crs && r->im->scene_crs)
         return noc_error(r->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
                          path, r->im->placed_by, geo_crs_name(r->im->scene_crs));
@@ -321,8 +326,12 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
     }
     s->ready = true;
     noc_report_file *file = &r->in->file;
+    const char *name = s->crs ? geo_crs_name(s->crs) : "";
+    s->further = file->crs && strcmp(file->crs, name);
+    if (s->further)
+        geo_issue(r->in->issues, GEO_REPAIRED, "CRS beside another in one file: each place is taken by its own", name);
     if (!file->crs) {
-        file->crs = s->crs ? arena_strdup(&r->im->report->arena, geo_crs_name(s->crs)) : "";
+        file->crs = s->crs ? arena_strdup(&r->im->report->arena, name) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
         file->crs_given = arena_strdup(&r->im->report->arena, s->taken ? "" : s->spelling);
         file->crs_overridden = r->in->crs != NULL;
@@ -479,7 +488,8 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
     }
     for (size_t i = 0; i < 3 * count; i++)
         xyz[i] -= r->im->origin[i % 3];
-    widen_extent(&in->file, lo, hi);
+    if (!s->further)
+        widen_extent(&in->file, lo, hi);
     *usable = true;
     return NOC_OK;
 }

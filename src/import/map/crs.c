@@ -22,6 +22,13 @@ noc_status map_check_crs_text(const char *text, const char *name, noc_log *log) 
  * from one of them and not from the other is refused. So is a name that is an object: GDAL takes its text for the
  * CRS's.
  * {"type": T, "properties": {"name": N}} has two levels. */
+/* A CRS as a file has it, without blanks. */
+typedef struct crs_text {
+    char text[120];
+    size_t length; /* of all of it; 0: none */
+    size_t feature;
+} crs_text;
+
 typedef struct json_scan {
     const char *name;
     noc_log *log;
@@ -29,7 +36,10 @@ typedef struct json_scan {
     bool in_string, escaped;
     bool named; /* the file's own member holds a string */
     bool cut, cut_key;
-    int hex; /* digits of \u still to come */
+    crs_text now, of_file, own[2]; /* own: of features, the first that differ */
+    size_t now_feature, feature;
+    bool in_list; /* of features */
+    int hex;      /* digits of \u still to come */
     unsigned code;
     size_t length; /* of the string so far, though only its begin is kept */
     char text[LONGEST];
@@ -42,6 +52,53 @@ static bool is_crs_key(const char *text) {
 
 /* {"exceededTransferLimit": true}: the server has sent a part. Of keys only the begin is kept. */
 static bool is_cut_key(const char *text) { return !strcmp(text, "exceededTransfe"); }
+
+/* ---- CRSs of features ---- */
+
+static void keep_crs(json_scan *s, char c) {
+    if (isspace((unsigned char)c) || (!s->now.length && c == ':'))
+        return;
+    if (s->now.length + 1 < sizeof(s->now.text))
+        s->now.text[s->now.length] = c;
+    s->now.length++;
+}
+
+static bool same_crs(const crs_text *a, const crs_text *b) {
+    return a->length == b->length && !strcmp(a->text, b->text);
+}
+
+/* A member has ended. Of a feature's properties one may be called so, too: that is no object. */
+static void crs_ended(json_scan *s) {
+    crs_text now = s->now;
+    bool of_file = s->crs_depth == 1;
+    s->now = (crs_text){ 0 };
+    s->crs_depth = 0;
+    now.text[NOC_MIN(now.length, sizeof(now.text) - 1)] = 0;
+    now.feature = s->now_feature;
+    if (now.text[0] != '{' || !strstr(now.text, "\"properties\""))
+        return;
+    if (of_file)
+        s->of_file = now;
+    else if (!s->own[0].length)
+        s->own[0] = now;
+    else if (!s->own[1].length && !same_crs(&s->own[0], &now))
+        s->own[1] = now;
+}
+
+/* The file's CRS may come behind those of its features. */
+static void tell_odd(const json_scan *s, char *odd, size_t size) {
+    for (int i = 0; i < 2 && !*odd; i++)
+        if (s->own[i].length && !same_crs(&s->own[i], &s->of_file))
+            noc_snprintf(odd, size, "feature %zu has the CRS %s of its own, the file %s", s->own[i].feature,
+                         s->own[i].text, s->of_file.length ? s->of_file.text : "none");
+}
+
+/* Counts the objects of the list that lies in the file's object. */
+static void count_feature(json_scan *s, char c) {
+    if (s->depth == 2)
+        s->in_list = c == '[';
+    s->feature += s->depth == 3 && s->in_list && c == '{';
+}
 
 /* Elsewhere than in a CRS only keys matter, which are short. */
 static void keep(json_scan *s, char c) {
@@ -95,14 +152,17 @@ static noc_status between_strings(json_scan *s, char c) {
         s->length = 0;
         break;
     case ':':
-        if (!s->crs_depth && is_crs_key(s->text))
+        if (!s->crs_depth && is_crs_key(s->text)) {
             s->crs_depth = s->depth;
+            s->now_feature = s->feature;
+        }
         s->cut_key = !s->crs_depth && is_cut_key(s->text);
         break;
     case 't': s->cut = s->cut || s->cut_key; break;
     case '{':
     case '[':
         s->depth++;
+        count_feature(s, c);
         if (s->crs_depth && s->depth > s->crs_depth + 2)
             return noc_error(s->log, NOC_ERR_FORMAT,
                              "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
@@ -111,11 +171,11 @@ static noc_status between_strings(json_scan *s, char c) {
     case ']':
         s->depth -= s->depth > 0;
         if (s->depth < s->crs_depth)
-            s->crs_depth = 0;
+            crs_ended(s);
         break;
     case ',':
-        if (s->depth == s->crs_depth)
-            s->crs_depth = 0;
+        if (s->crs_depth && s->depth == s->crs_depth)
+            crs_ended(s);
         break;
     case '\'':
     case '/':
@@ -127,8 +187,16 @@ static noc_status between_strings(json_scan *s, char c) {
     return NOC_OK;
 }
 
-static noc_status check_json(noc_stream *stream, bool *named, bool *cut, noc_log *log) {
+static noc_status check_character(json_scan *s, char c) {
+    noc_status status = s->in_string ? in_string(s, c) : between_strings(s, c);
+    if (s->crs_depth)
+        keep_crs(s, c);
+    return status;
+}
+
+static noc_status check_json(map_source *m, noc_stream *stream, bool *named, bool *cut) {
     enum { CHUNK = 1 << 16 };
+    noc_log *log = m->log;
     json_scan *s = noc_calloc(1, sizeof(*s));
     char *buffer = noc_alloc(CHUNK);
     size_t got = 1;
@@ -140,8 +208,10 @@ static noc_status check_json(noc_stream *stream, bool *named, bool *cut, noc_log
     while (!status && got) {
         status = noc_stream_read(stream, buffer, CHUNK, &got);
         for (size_t i = 0; i < got && !status; i++)
-            status = s->in_string ? in_string(s, buffer[i]) : between_strings(s, buffer[i]);
+            status = check_character(s, buffer[i]);
     }
+    if (s)
+        tell_odd(s, m->odd_crs, sizeof(m->odd_crs));
     *named = s && s->named;
     *cut = s && s->cut;
     free(s);
@@ -245,11 +315,12 @@ static noc_status check_shapefile(const char *path, const char *name, noc_log *l
     return status;
 }
 
-noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, bool *named, noc_log *log) {
+noc_status map_check_crs(map_source *m, noc_stream *stream, const char *path, const map_format *format) {
     bool cut = false, arcgis;
-    *named = true;
-    noc_status status = format->kind == MAP_GEOJSON  ? check_json(stream, named, &cut, log)
-                        : format->kind == MAP_ARCGIS ? check_json(stream, &arcgis, &cut, log)
+    noc_log *log = m->log;
+    m->crs_named = true;
+    noc_status status = format->kind == MAP_GEOJSON  ? check_json(m, stream, &m->crs_named, &cut)
+                        : format->kind == MAP_ARCGIS ? check_json(m, stream, &arcgis, &cut)
                                                      : NOC_OK;
     if (cut)
         noc_warn(log, "%s: the server gave a part of its features (exceededTransferLimit): ask it for the others",

@@ -10,8 +10,8 @@
 /* An error if the text of a CRS names a file: a grid, a file of definitions. */
 noc_status map_check_crs_text(const char *text, const char *name, noc_log *log);
 /* The same of all CRSs of a GeoJSON, a FlatGeobuf or a Shapefile, put together as GDAL does, before it sees them. path
- * is GDAL's. *named: false where a GeoJSON names none. */
-noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, bool *named, noc_log *log);
+ * is GDAL's. Sets m->crs_named and m->odd_crs. */
+noc_status map_check_crs(map_source *m, noc_stream *stream, const char *path, const map_format *format);
 /* Of a GeoPackage, once it is open: GDAL reads the CRS of a layer as the layer is asked for. Their table must be one of
  * which each query gets what it holds: without indexes, hidden and generated columns. */
 noc_status map_check_crs_rows(map_source *m);

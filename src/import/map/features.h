@@ -22,8 +22,11 @@ typedef struct map_reading {
     lamp_writer writer;
     tag_buffer tags;
     map_source source;
-    bool building_layer; /* by its name */
-    bool lines;          /* the shape that is being read is made of lines */
+    bool building_layer;         /* by its name */
+    int crs_field, broken_field; /* of a GML's layer, that gml_places.c made; -1: none */
+    int crs_now;                 /* the CRS that the sink was told of last, of several; -1: none */
+    char broken[64];             /* lamp_writer.broken */
+    bool lines;                  /* the shape that is being read is made of lines */
     NOC_ARRAY(size_t) rings;
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(double) times; /* of the line that is being read */

@@ -62,6 +62,9 @@ noc_status map_gml_open(map_source *m, noc_stream *stream, char **path) {
     if (here >= 0 && all > here)
         noc_warn(m->log, "%s: the server had %lld features and gave %lld: ask it for the others (startIndex, count)",
                  m->name, all, here);
+    if ((status = map_gml_look_at_places(m)))
+        return status;
+    size = strlen(m->content);
     snprintf(m->memory, sizeof(m->memory), "/vsimem/nocturne/%p.gml", (void *)m);
     VSILFILE *f = gdal.VSIFileFromMemBuffer(m->memory, (GByte *)m->content, size, FALSE);
     if (f)

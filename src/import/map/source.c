@@ -286,7 +286,7 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     if (!status && format->kind == MAP_GML)
         status = map_gml_open(m, stream, &path);
     if (!status)
-        status = map_check_crs(stream, path, format, &m->crs_named, log);
+        status = map_check_crs(m, stream, path, format);
     if (!status) {
         const char *const *options = format->kind == MAP_OSM                     ? osm_options
                                      : format->kind == MAP_GML                   ? gml_options
@@ -332,6 +332,7 @@ void map_source_close(map_source *m) {
         gdal.GDALClose(m->dataset);
     map_gml_close(m);
     free(m->content);
+    array_free(&m->gml_crs);
     if (m->entered)
         gdal_leave();
     scratch_remove(&m->copy);

@@ -15,6 +15,12 @@ typedef struct map_format {
 
 #if NOC_HAVE_GDAL
 
+/* A CRS as a GML names it, and the line where it does first. */
+typedef struct map_gml_crs {
+    char name[200];
+    size_t line;
+} map_gml_crs;
+
 typedef struct map_source {
     GDALDatasetH dataset;
     char error[512];   /* GDAL's first failure since it was opened, "" if none */
@@ -23,11 +29,14 @@ typedef struct map_source {
     bool entered;      /* GDAL is there, and this thread's settings of it are ours */
     bool plain;        /* GDAL reads the file itself, neither unpacked nor from an archive */
     bool crs_named;    /* false: a GeoJSON without one, whose CRS is its format's */
+    char odd_crs[400]; /* of a GeoJSON: the first feature whose CRS is not the file's, and both; "": there is none */
     const char *name, *format;
     noc_log *log;
     scratch_folder copy; /* with our own copy of the file, where it is not read in place */
     char *content;       /* of a GML, and what GDAL knows it by; "": nothing */
     char memory[64];
+    NOC_ARRAY(map_gml_crs) gml_crs;
+    bool gml_several; /* its geometries are in more than one of them */
 } map_source;
 
 /* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing
@@ -43,6 +52,12 @@ void map_source_close(map_source *m);
 /* gml.c: the path by which GDAL finds the stream's content, in place of *path; checked, and reported. */
 noc_status map_gml_open(map_source *m, noc_stream *stream, char **path);
 void map_gml_close(map_source *m);
+
+/* gml_places.c: fills gml_crs and gml_several, and rewrites the content where that is needed: geometries without
+ * numbers are taken out. Features then have these fields. */
+#define MAP_GML_CRS "nocturne_crs"       /* place in gml_crs, where gml_several */
+#define MAP_GML_BROKEN "nocturne_broken" /* what stands where coordinates should */
+noc_status map_gml_look_at_places(map_source *m);
 
 #endif
 

@@ -151,6 +151,8 @@ bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag
         if (!gdal.OGR_F_IsFieldSetAndNotNull(feature, i))
             continue;
         const char *key = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
+        if (strstr(key, MAP_GML_CRS) || strstr(key, MAP_GML_BROKEN))
+            continue;
         const char *text = gdal.OGR_F_GetFieldAsString(feature, i);
         if (!strcmp(key, "all_tags") || !strcmp(key, "other_tags")) {
             add_hstore(b, text);
@@ -234,6 +236,41 @@ static bool looks_projected(OGRLayerH layer) {
     return outside > inside;
 }
 
+/* Tells the sink a CRS as a GML names it, and where. */
+static noc_status tell_gml_crs(map_reading *m, size_t number) {
+    const map_gml_crs *crs = &m->source.gml_crs.data[number];
+    const geo_sink *sink = m->writer.sink;
+    bool lat_first = false; /* GDAL has exchanged what it knows to be exchanged */
+    char *place = noc_format("%s:%zu", m->writer.place, crs->line);
+    noc_status status = place ? sink->crs(sink->ctx, crs->name, place, &lat_first) : map_no_memory(m);
+    free(place);
+    return status;
+}
+
+/* Of a GML with several CRSs: sets that of the next feature. */
+static noc_status take_feature_crs(map_reading *m, OGRFeatureH feature) {
+    if (!m->source.gml_several)
+        return NOC_OK;
+    long long number = -1;
+    bool told = m->crs_field >= 0 && gdal.OGR_F_IsFieldSetAndNotNull(feature, m->crs_field) &&
+                noc_parse_int(gdal.OGR_F_GetFieldAsString(feature, m->crs_field), &number) && number >= 0 &&
+                (size_t)number < m->source.gml_crs.len;
+    m->writer.no_crs = !told;
+    if (!told || m->crs_now == (int)number)
+        return NOC_OK;
+    m->crs_now = (int)number;
+    return tell_gml_crs(m, (size_t)number);
+}
+
+/* A field that gml_places.c made, which may lie in another; -1: there is none. */
+static int made_field(OGRFeatureDefnH defn, const char *name) {
+    int count = gdal.OGR_FD_GetFieldCount(defn);
+    for (int i = 0; i < count; i++)
+        if (strstr(gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i)), name))
+            return i;
+    return -1;
+}
+
 static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     if (m->format->kind == MAP_OSM) {
         m->writer.geographic = true;
@@ -245,6 +282,13 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     const geo_sink *sink = m->writer.sink;
     m->writer.geographic = (m->writer.geographic && !sink->given_metres) || sink->given_degrees;
     const char *given = m->params ? m->params->crs : NULL;
+    if (m->source.gml_several) {
+        free(crs);
+        m->writer.geographic = false;
+        return NOC_OK; /* take_feature_crs */
+    }
+    if (!crs && m->source.gml_crs.len)
+        return tell_gml_crs(m, 0);
     bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);
     if (replaced)
         m->writer.geographic = false;
@@ -284,9 +328,20 @@ static void leave(map_reading *m, OGRFeatureH feature, const double xyz[3]) {
                        somewhere ? (double[]){ box.MinX, box.MaxX, box.MinY, box.MaxY } : NULL);
 }
 
+/* Sets what of the next feature keeps it from its place. */
+static noc_status take_place(map_reading *m, OGRFeatureH feature) {
+    bool broken = m->broken_field >= 0 && gdal.OGR_F_IsFieldSetAndNotNull(feature, m->broken_field);
+    m->writer.broken = broken ? m->broken : NULL;
+    if (broken)
+        snprintf(m->broken, sizeof(m->broken), "%s", gdal.OGR_F_GetFieldAsString(feature, m->broken_field));
+    return take_feature_crs(m, feature);
+}
+
 static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
-    bool shape;
-    noc_status taken = map_read_shape(m, feature, defn, &shape);
+    bool shape = false;
+    noc_status taken = take_place(m, feature);
+    if (!taken && !m->writer.no_crs)
+        taken = map_read_shape(m, feature, defn, &shape);
     if (taken || shape) {
         m->writer.seen.total[dimension_of(feature)] += shape;
         return taken;
@@ -327,6 +382,8 @@ static noc_status read_features(map_reading *m, OGRLayerH layer) {
     OGRFeatureH feature;
     size_t n = 0;
     noc_status status = NOC_OK;
+    m->crs_field = made_field(defn, MAP_GML_CRS);
+    m->broken_field = made_field(defn, MAP_GML_BROKEN);
     while (!status && (feature = gdal.OGR_L_GetNextFeature(layer))) {
         status = read_feature(m, feature, defn);
         gdal.OGR_F_Destroy(feature);
@@ -419,9 +476,20 @@ static noc_status read_layers(map_reading *m) {
     return status;
 }
 
+/* GDAL takes all of a GeoJSON in the file's CRS, and so may the user. */
+static noc_status refuse_odd_crs(const map_reading *m) {
+    const geo_sink *sink = m->writer.sink;
+    if (!m->source.odd_crs[0] || sink->given_metres || sink->given_degrees)
+        return NOC_OK;
+    return noc_error(sink->log, NOC_ERR_FORMAT,
+                     "%s: GeoJSON: %s: one file has one CRS; write a file for each, or pass --file-crs FILE=CRS if all "
+                     "of it is in that one",
+                     m->writer.place, m->source.odd_crs);
+}
+
 static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params,
                            geo_sink *sink) {
-    map_reading m = { .format = format, .stream = stream, .params = params };
+    map_reading m = { .format = format, .stream = stream, .params = params, .crs_now = -1 };
     noc_status status = lamp_writer_start(&m.writer, sink, noc_stream_name(stream), params);
     if (status)
         return status;
@@ -432,6 +500,8 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
     if (m.source.unpaired[0])
         geo_issue(sink->issues, GEO_SKIPPED,
                   "rows and shapes of a Shapefile that are not in both, its .dbf and its .shx", m.source.unpaired);
+    if (!status)
+        status = refuse_odd_crs(&m);
     if (!status)
         status = read_layers(&m);
     status = status ? status : map_source_check(&m.source, stream);
