@@ -410,7 +410,9 @@ static noc_status finish_lamps(importer *im) {
         return NOC_ERR_CANCELLED;
     warn_if_coarse(im);
     warn_of_collapsed(im);
-    noc_status status = repeat_lamps(im);
+    noc_status status = e.any ? NOC_OK : strays_drop(im); /* where there is a city they are asked of it */
+    if (!status)
+        status = repeat_lamps(im);
     if (!status)
         status = warn_of_doubles(im);
     if (!status)

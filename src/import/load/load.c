@@ -357,7 +357,10 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
                                                   : "their local metres");
     if (status)
         return status;
-    return im->inspect ? windows_add(im) : finish_city(im);
+    if (!im->inspect)
+        return finish_city(im);
+    status = strays_drop(im);
+    return status ? status : windows_add(im);
 }
 
 static bool among(const char *path, const char *const *paths, size_t count) {
@@ -533,6 +536,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         geo_issues_destroy(im.inputs[i].found);
         place_forget(&im.inputs[i]);
         units_forget(&im.inputs[i]);
+        array_free(&im.inputs[i].lamps_seen);
     }
     if (!status && params->strict)
         status = report_strict(im.report, params, scene->log);

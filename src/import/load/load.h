@@ -46,6 +46,12 @@ typedef struct given_place {
     source_crs *source;
 } given_place;
 
+/* A lamp of a file that is looked at and not drawn. */
+typedef struct seen_lamp {
+    double xy[2]; /* local metres */
+    given_place given;
+} seen_lamp;
+
 typedef struct input {
     const char *path;
     const char *folder; /* the input that is a folder, in which it was found; NULL: it is named */
@@ -65,9 +71,10 @@ typedef struct input {
     NOC_ARRAY(float) lamp_heights;    /* of those that name no unit, as they are written */
     NOC_ARRAY(float) lantern_heights; /* of these, of lanterns */
     given_place lamp_given;           /* of the first of them */
-    bool named_lamps;                 /* by noc_import_params.lamps */
-    bool named_tracks;                /* by noc_import_params.tracks */
-    int strange_crs;                  /* that were not understood and not replaced by --crs */
+    NOC_ARRAY(seen_lamp) lamps_seen;
+    bool named_lamps;  /* by noc_import_params.lamps */
+    bool named_tracks; /* by noc_import_params.tracks */
+    int strange_crs;   /* that were not understood and not replaced by --crs */
     NOC_ARRAY(source_crs *) sources;
     /* the scene's side: what is found as parts are taken, and the object that is being taken */
     geo_issues *found;
@@ -533,6 +540,10 @@ void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t co
 noc_status repeat_object(importer *im, input *in, const object_now *now, const char *id);
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
+
+/* strays.c: lamps that lie more than 20 km from all others are left out, reported and warned of; groups of them that
+ * are no slips are warned of alone. */
+noc_status strays_drop(importer *im);
 
 /* doubles.c: a warning where most lamps of a file seem to be another file's. */
 noc_status warn_of_doubles(const importer *im);

@@ -218,7 +218,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         pthread_mutex_lock(&r->im->lock);
         luminaires_see(r->im, r->in, &p.lamp);
         pthread_mutex_unlock(&r->im->lock);
-        return NOC_OK;
+        seen_lamp seen = { { p.lamp.xyz[0], p.lamp.xyz[1] }, p.given };
+        return array_push(&r->in->lamps_seen, seen) ? NOC_OK : noc_no_memory(r->log, r->in->path);
     }
     p.lamp.id = lamp->id ? lamp->id : "";
     p.lamp.ref = lamp->ref ? lamp->ref : "";
