@@ -308,6 +308,12 @@ NOC_API noc_image *noc_view_image(noc_view *view);
  * ray tracing structure follow, as the next frame would. NOC_ERR_ARGUMENT after reporting a ray without direction or
  * place: no hit is set. NOC_ERR_MEMORY: so, too. */
 NOC_API noc_status noc_view_cast(noc_view *view, const noc_ray *rays, size_t count, noc_hit *hits);
+/* The ground at those places, local metres, as it is seen from above: the surface there of one of these classes
+ * (1u << noc_class each), through trees, lamps and the like, but not through buildings. Without one, hits[i].hit is
+ * false; so it is where something stands on the ground (it is inside of a body) or covers it lower than 2.5 m over it,
+ * as a car does, or is steeper than 60 degrees. Otherwise as noc_view_cast. */
+NOC_API noc_status noc_view_cast_down(noc_view *view, const double (*xy)[2], size_t count, uint32_t classes,
+                                      noc_hit *hits);
 
 NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
 /* What a view's numbers are, as noc_channel has it. NOC_CHANNEL_LABELS have neither bar nor range. */

@@ -1,14 +1,9 @@
-/* Ground as it is seen from above: points of a grid, one in each cell at a random place, where rays come down. Cars,
- * trees, lamps and the like are looked through, buildings are not. */
+/* Ground as it is seen from above: points of a grid, one in each cell at a random place. */
 #include "ask/ask.h"
 
 #include <math.h>
 
-enum { THROUGH = 8, CHUNK = 8192 }; /* surfaces that a ray goes through; rays at once */
-
-#define LOOKED_THROUGH                                                                                                 \
-    (1u << NOC_CLASS_TREE | 1u << NOC_CLASS_LAMP | 1u << NOC_CLASS_FURNITURE | 1u << NOC_CLASS_VEHICLE |               \
-     1u << NOC_CLASS_INSTALLATION)
+enum { CHUNK = 8192 }; /* places at once */
 
 static uint64_t key_of(int32_t x, int32_t y) { return (uint64_t)(uint32_t)x << 32 | (uint32_t)y; }
 
@@ -130,53 +125,28 @@ static int by_key(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* Sends rays down at those places until each has met ground or a building. */
-static noc_status look_down(const asked *a, noc_ray *rays, noc_hit *hits, size_t count, double step, uint32_t classes,
-                            size_t *found) {
-    for (int turn = 0; turn < THROUGH && count; turn++) {
-        noc_status status = noc_view_cast(a->view, rays, count, hits);
-        size_t left = 0;
-        for (size_t i = 0; i < count && !status; i++) {
-            const noc_hit *h = &hits[i];
-            if (!h->hit)
-                continue;
-            if (LOOKED_THROUGH >> h->cls & 1 || h->light >= 0) {
-                rays[left] = rays[i];
-                rays[left++].origin[2] = h->place[2] - 1e-3;
-            } else if (classes >> h->cls & 1) {
-                noc_patch p = noc_hit_patch(h, step * step, NULL, NULL);
-                status = noc_region_add(a->to, &p, 1);
-                ++*found;
-            }
-        }
-        if (status != NOC_OK)
-            return status;
-        count = left;
-    }
-    return NOC_OK;
-}
-
 noc_status ask_add_ground(const asked *a, ask_cells *cells, uint32_t classes, size_t *found) {
-    noc_ray *rays = noc_alloc(CHUNK * sizeof(*rays));
+    double(*xy)[2] = noc_alloc(CHUNK * sizeof(*xy));
     noc_hit *hits = noc_alloc(CHUNK * sizeof(*hits));
-    noc_status status = rays && hits ? NOC_OK : noc_no_memory(a->log, "region");
-    noc_scene_info info;
-    noc_scene_get_info(a->scene, &info);
+    noc_status status = xy && hits ? NOC_OK : noc_no_memory(a->log, "region");
     *found = 0;
     if (cells->keys.len)
         qsort(cells->keys.data, cells->keys.len, sizeof(uint64_t), by_key);
     for (size_t i = 0; i < cells->keys.len && !status;) {
         size_t n = 0;
-        for (; i < cells->keys.len && n < CHUNK; i++) {
-            if (i && cells->keys.data[i] == cells->keys.data[i - 1])
+        for (; i < cells->keys.len && n < CHUNK; i++)
+            if (!i || cells->keys.data[i] != cells->keys.data[i - 1])
+                place_of(cells->keys.data[i], cells->step, xy[n++]);
+        status = noc_view_cast_down(a->view, xy, n, classes, hits);
+        for (size_t k = 0; k < n && !status; k++) {
+            if (!hits[k].hit)
                 continue;
-            double at[2];
-            place_of(cells->keys.data[i], cells->step, at);
-            rays[n++] = (noc_ray){ { at[0], at[1], info.bounds_max[2] + 1 }, { 0, 0, -1 }, INFINITY };
+            noc_patch p = noc_hit_patch(&hits[k], cells->step * cells->step, NULL, NULL);
+            status = noc_region_add(a->to, &p, 1);
+            ++*found;
         }
-        status = look_down(a, rays, hits, n, cells->step, classes, found);
     }
-    free(rays);
+    free(xy);
     free(hits);
     return status;
 }

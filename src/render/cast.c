@@ -27,3 +27,79 @@ noc_status noc_view_cast(noc_view *v, const noc_ray *rays, size_t count, noc_hit
     noc_scene_unlock_frame(v->scene);
     return status;
 }
+
+#define LOOKED_THROUGH                                                                                                 \
+    (1u << NOC_CLASS_TREE | 1u << NOC_CLASS_LAMP | 1u << NOC_CLASS_FURNITURE | 1u << NOC_CLASS_VEHICLE |               \
+     1u << NOC_CLASS_INSTALLATION)
+enum { THROUGH = 8, DOWN_CHUNK = 4096 }; /* surfaces that a ray goes through; rays at once */
+
+#define COVERS 2.5 /* m: what is lower over the ground covers it */
+#define LEVEL 0.5  /* cosine of 60 degrees: what is steeper is the side of something */
+
+/* Rays that go down, which of the places they are for, and what they have gone through. */
+typedef struct down_rays {
+    noc_ray ray[DOWN_CHUNK];
+    noc_hit hit[DOWN_CHUNK];
+    size_t of[DOWN_CHUNK];
+    int inside[DOWN_CHUNK];    /* bodies that it has entered and not left */
+    double lowest[DOWN_CHUNK]; /* of those surfaces */
+} down_rays;
+
+/* Behind that surface; ray i becomes ray `to`. */
+static void go_through(down_rays *d, size_t i, size_t to) {
+    const noc_hit *h = &d->hit[i];
+    d->of[to] = d->of[i];
+    d->ray[to] = d->ray[i];
+    d->ray[to].origin[2] = h->place[2] - 1e-3;
+    d->inside[to] = d->inside[i] + (h->front ? 1 : -1);
+    d->lowest[to] = h->place[2];
+}
+
+static bool is_open_ground(const down_rays *d, size_t i, uint32_t classes) {
+    const noc_hit *h = &d->hit[i];
+    return h->hit && classes >> h->cls & 1 && h->normal[2] > LEVEL && d->inside[i] <= 0 &&
+           d->lowest[i] > h->place[2] + COVERS;
+}
+
+static noc_status cast_down(noc_view *v, down_rays *d, size_t count, uint32_t classes, noc_hit *hits) {
+    for (int turn = 0; turn < THROUGH && count; turn++) {
+        noc_status status = noc_view_cast(v, d->ray, count, d->hit);
+        if (status != NOC_OK)
+            return status;
+        size_t left = 0;
+        for (size_t i = 0; i < count; i++) {
+            const noc_hit *h = &d->hit[i];
+            if (h->hit && (LOOKED_THROUGH >> h->cls & 1 || h->light >= 0))
+                go_through(d, i, left++);
+            else if (is_open_ground(d, i, classes))
+                hits[d->of[i]] = *h;
+        }
+        count = left;
+    }
+    return NOC_OK;
+}
+
+noc_status noc_view_cast_down(noc_view *v, const double (*xy)[2], size_t count, uint32_t classes, noc_hit *hits) {
+    static const noc_hit none = { .material = -1, .object = -1, .instance = -1, .light = -1 };
+    if (!v || (count && (!xy || !hits)))
+        return noc_null(v ? v->log : NULL, __func__);
+    down_rays *d = noc_alloc(sizeof(*d));
+    if (!d)
+        return noc_no_memory(v->log, "cast");
+    noc_scene_info info;
+    noc_scene_get_info(v->scene, &info);
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < count && !status;) {
+        size_t n = 0;
+        for (; n < DOWN_CHUNK && i < count; i++, n++) {
+            hits[i] = none;
+            d->of[n] = i;
+            d->inside[n] = 0;
+            d->lowest[n] = INFINITY;
+            d->ray[n] = (noc_ray){ { xy[i][0], xy[i][1], info.bounds_max[2] + 1 }, { 0, 0, -1 }, INFINITY };
+        }
+        status = cast_down(v, d, n, classes, hits);
+    }
+    free(d);
+    return status;
+}
