@@ -22,6 +22,7 @@ backend: render light scene core
 lab:
 recipe:
 ask:
+measure: render scene core
 viewer:
 cli: viewer
 reader:

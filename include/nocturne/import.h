@@ -367,8 +367,13 @@ NOC_API int noc_reader_main(void);
  * easting northing height (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
 NOC_API noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]);
-/* The same of many points, 3 numbers each; those that have no place in the CRS become NaN, and are no error. */
+/* The same of many points, 3 numbers each; those that have no place in the other become NaN, and are no error. */
+NOC_API noc_status noc_scene_to_local_all(const noc_scene *scene, const char *crs, double *xyz, size_t count);
 NOC_API noc_status noc_scene_from_local_all(const noc_scene *scene, const char *crs, double *xyz, size_t count);
+
+/* A CRS (NULL: the scene's own) as WKT 2 without its heights, as GDAL and QGIS read it; free() it. NULL: the scene has
+ * no CRS, or after reporting one that is not understood. */
+NOC_API char *noc_scene_crs_wkt(const noc_scene *scene, const char *crs);
 
 /* Where a camera stands, as people say it: noc_camera_options. The texts are the caller's. */
 typedef struct noc_camera_params {

@@ -152,6 +152,8 @@ typedef struct noc_region_info {
     bool point;       /* it is a single point */
 } noc_region_info;
 NOC_API void noc_region_get_info(const noc_region *region, noc_region_info *info);
+/* Its part of that index, below noc_region_info.patches; false: there is none. */
+NOC_API bool noc_region_get_patch(const noc_region *region, size_t index, noc_patch *patch);
 /* Corners of a convex outline as it is seen from above, counter-clockwise, at its lowest height; local metres. The
  * region's outermost places in `most` directions: as many corners at most. Their count. */
 NOC_API size_t noc_region_outline(const noc_region *region, double (*corners)[3], size_t most);

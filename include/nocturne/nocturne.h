@@ -10,6 +10,7 @@
 #include <nocturne/log.h>
 #include <nocturne/luminaire.h>
 #include <nocturne/map.h>
+#include <nocturne/measure.h>
 #include <nocturne/navigate.h>
 #include <nocturne/option.h>
 #include <nocturne/path.h>

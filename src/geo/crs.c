@@ -300,6 +300,12 @@ void geo_crs_destroy(geo_crs *crs) {
 
 const char *geo_crs_name(const geo_crs *crs) { return crs ? crs->name : ""; }
 const char *geo_crs_definition(const geo_crs *crs) { return crs->definition; }
+
+char *geo_crs_wkt(const geo_crs *crs) {
+    const char *wkt = proj.proj_as_wkt(crs->context, crs->pj, PJ_WKT2_2019, NULL);
+    return wkt ? noc_strdup(wkt) : NULL;
+}
+
 bool geo_crs_is_geographic(const geo_crs *crs) { return crs->geographic; }
 bool geo_crs_is_metric(const geo_crs *crs) { return crs->metric; }
 bool geo_crs_lat_first(const geo_crs *crs) { return crs->lat_first; }

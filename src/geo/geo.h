@@ -23,6 +23,8 @@ geo_crs *geo_crs_clone(const geo_crs *crs);   /* NULL: memory was refused, or cr
 void geo_crs_destroy(geo_crs *crs);
 const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
 const char *geo_crs_definition(const geo_crs *crs); /* what it was made from */
+/* Its horizontal part as WKT 2, 2019; free() it. NULL: it cannot be written so, or memory was refused. */
+char *geo_crs_wkt(const geo_crs *crs);
 bool geo_crs_is_geographic(const geo_crs *crs);
 bool geo_crs_is_metric(const geo_crs *crs); /* projected, axes in metres */
 bool geo_crs_lat_first(const geo_crs *crs); /* the authority's order is northing/latitude first */

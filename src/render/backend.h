@@ -12,7 +12,7 @@
  * is a receiver as passes have it); points may as well be given, as of a grid that is measured on. */
 typedef struct noc_receiver {
     float p[3], n[3];  /* local metres; unit */
-    uint32_t material; /* whose reflectance the result is seen by */
+    uint32_t material; /* whose reflectance the result is seen by; NO_SURFACE: here is none */
 } noc_receiver;
 
 /* One frame. Nothing in it changes while the frame is run. */

@@ -136,8 +136,9 @@ static void note_times(noc_view *v) {
     v->stats.cpu_seconds = noc_cpu_seconds() - v->began_cpu;
 }
 
-static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
-                             const noc_progress *progress) {
+/* receivers: as in noc_frame. */
+static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_receiver *receivers,
+                             const noc_render_params *p, const noc_progress *progress) {
     noc_plan plan;
     noc_frame frame;
     bool map = v->scene->environment != NULL;
@@ -148,8 +149,9 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
         return status;
-    v->history.surfaces &= !v->scene->lets_through; /* each frame meets other surfaces */
+    v->history.surfaces &= !v->scene->lets_through && !receivers; /* each frame meets other surfaces */
     noc_history_begin(&v->history, camera, p, v->scene->versions.commits, &frame);
+    frame.receivers = receivers;
     noc_make_frame_environment(v->scene, p, &frame.constants);
     noc_plan_make(p, map, frame.history_set, frame.gbuffer == frame.previous_gbuffer, &plan);
     frame.plan = &plan;
@@ -176,10 +178,10 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
 }
 
 /* No edit of the scene is published meanwhile. */
-static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
-                            const noc_progress *progress) {
+static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_receiver *receivers,
+                            const noc_render_params *p, const noc_progress *progress) {
     noc_scene_lock_frame(v->scene);
-    noc_status status = make_frame(v, camera, p, progress);
+    noc_status status = make_frame(v, camera, receivers, p, progress);
     noc_scene_unlock_frame(v->scene);
     return status;
 }
@@ -197,8 +199,18 @@ noc_status noc_view_render(noc_view *v, const noc_camera *camera, const noc_rend
     params = params ? params : &defaults;
     noc_status status = check(v, camera, params);
     if (status == NOC_OK)
-        status = run_frame(v, camera, params, progress);
+        status = run_frame(v, camera, NULL, params, progress);
     return status == NOC_ERR_CANCELLED ? noc_cancelled(v->log, "render: cancelled") : status;
+}
+
+/* What is matte looks the same from anywhere, so any camera will do. */
+noc_status noc_view_receive(noc_view *v, const noc_receiver *receivers, const noc_render_params *params,
+                            const noc_progress *progress) {
+    const noc_camera above = { .eye = { 0, 0, 1e5 }, .up = { 0, 1, 0 }, .fov_deg = 60 };
+    noc_status status = check(v, &above, params);
+    status = status ? status : run_frame(v, &above, receivers, params, progress);
+    v->history.surfaces = false; /* no camera has seen them */
+    return status;
 }
 
 noc_image *noc_view_image(noc_view *v) {
@@ -326,7 +338,7 @@ noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc
         return status;
     noc_scene_lock_frame(v->scene); /* until its rays are traced again: the structure stays as it is */
     v->backend->record(v->state, true);
-    status = make_frame(v, camera, params, progress);
+    status = make_frame(v, camera, NULL, params, progress);
     v->backend->record(v->state, false);
     noc_status traced = v->backend->replay(v->state, progress, status == NOC_OK ? floor : NULL);
     noc_scene_unlock_frame(v->scene);

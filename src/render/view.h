@@ -30,6 +30,11 @@ struct noc_view {
     noc_last_frame last;
 };
 
+/* A frame of the light at these places, width times height of them by params, row by row, in place of what a camera
+ * sees: noc_view_render else. */
+noc_status noc_view_receive(noc_view *view, const noc_receiver *receivers, const noc_render_params *params,
+                            const noc_progress *progress);
+
 /* The last complete frame alone. */
 void noc_view_rows(noc_view *view, const noc_frame_rows *rows);
 

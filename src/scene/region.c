@@ -69,6 +69,13 @@ void noc_region_get_info(const noc_region *r, noc_region_info *info) {
         info->centre[k] /= info->weight;
 }
 
+bool noc_region_get_patch(const noc_region *r, size_t index, noc_patch *patch) {
+    if (!r || !patch || index >= r->patches.len)
+        return false;
+    *patch = r->patches.data[index];
+    return true;
+}
+
 static void corner_of(const noc_patch *p, int corner, double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = p->p[k] + (corner == 1 ? (double)p->u[k] : corner == 2 ? (double)p->v[k] : 0);

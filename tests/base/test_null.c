@@ -275,6 +275,18 @@ static noc_camera camera;
     P(noc_view_light_stats(view, NULL), true)                                                                          \
     P(0, noc_view_cast(NULL, &(noc_ray){ 0 }, 1, &(noc_hit){ 0 }) == NOC_ERR_ARGUMENT)                                 \
     P(0, noc_view_cast(view, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                       \
+    P(0, noc_view_cast_down(NULL, &(double[2]){ 0 }, 1, 0, &(noc_hit){ 0 }) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_view_cast_down(view, NULL, 1, 0, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_measure_points(NULL, NULL, 0, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_measure_points(view, NULL, 1, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_measure_raster(NULL, NULL, NULL, NULL, NULL) == NULL)                                                     \
+    P(0, noc_raster_write(NULL, "a.tif", NULL, NULL) == NOC_ERR_ARGUMENT)                                              \
+    P(0, noc_lux_figures_of(NULL, NULL, 1, &(noc_lux_figures){ 0 }, NULL) == NOC_ERR_ARGUMENT)                         \
+    P(0, noc_lux_figures_of(NULL, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_scene_to_local_all(NULL, NULL, NULL, 0) == NOC_ERR_ARGUMENT)                                              \
+    P(0, noc_scene_crs_wkt(NULL, NULL) == NULL)                                                                        \
+    P(0, !noc_region_get_patch(NULL, 0, NULL))                                                                         \
+    P(noc_raster_destroy(NULL), true)                                                                                  \
     P(0, noc_navigator_create(NULL, NULL, NULL) == NULL)                                                               \
     P(0, noc_navigator_create(scene, NULL, NULL) == NULL)                                                              \
     P(noc_navigator_destroy(NULL), true)                                                                               \

@@ -20,6 +20,19 @@ static geo_crs *scene_crs(const noc_scene *scene, const geo_crs *known, const ch
     return crs;
 }
 
+char *noc_scene_crs_wkt(const noc_scene *scene, const char *crs) {
+    noc_status status = NOC_OK;
+    if (!scene || (!crs && !scene->crs && !scene->crs_name))
+        return NULL;
+    bool given = scene->given_crs || scene->given_crs_kept;
+    geo_crs *of = crs     ? make_crs(scene, crs, NULL, false, &status)
+                  : given ? scene_crs(scene, scene->given_crs, scene->given_crs_kept, &status)
+                          : scene_crs(scene, scene->crs, scene->crs_kept, &status);
+    char *wkt = of ? geo_crs_wkt(of) : NULL;
+    geo_crs_destroy(of);
+    return wkt;
+}
+
 /* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. A point that
  * has no place there becomes NaN, and of a lone one that is an error. */
 static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double *xyz, size_t count,
@@ -57,6 +70,15 @@ noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xy
     noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, p, 1, true) : NOC_OK;
     for (int k = 0; !status && k < 3; k++)
         xyz[k] = p[k] - scene->origin[k];
+    return status;
+}
+
+noc_status noc_scene_to_local_all(const noc_scene *scene, const char *crs, double *xyz, size_t count) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, xyz, count, false) : NOC_OK;
+    for (size_t i = 0; !status && i < 3 * count; i++)
+        xyz[i] -= scene->origin[i % 3];
     return status;
 }
 

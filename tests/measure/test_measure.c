@@ -1,0 +1,287 @@
+/* Readings: closed forms of meters, rasters that are the same however they are cut, and their files. */
+static char folder[] = "/tmp/nocturne-measureXXXXXX";
+#include "../folder.h"
+#include "../render/rooms.h"
+#include "../told.h"
+
+#include "import/map/gdal.h"
+
+#include <nocturne/measure.h>
+
+#define HIGH 3.0
+#define CANDELA (10000 / (4 * M_PI))
+
+/* A lamp of 10,000 lm that shines evenly, 3 m over a floor that is seen from above; what lies in `cover` over it. */
+static noc_scene *lit_floor(bool cover, noc_log *log) {
+    noc_scene *s = noc_scene_create(log);
+    int road =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0, 0, 0 }, .roughness = 1, .cls = NOC_CLASS_ROAD });
+    int car = noc_scene_add_material(s, &(noc_material){
+                                            .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = NOC_CLASS_VEHICLE });
+    int roof =
+        noc_scene_add_material(s,
+                               &(noc_material){ .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = NOC_CLASS_ROOF });
+    add_floor(s, road, 0, 0, 0, 100);
+    if (cover) {
+        add_floor(s, car, 10.5, 0.5, 1, 1.5);   /* x 9 to 12, y -1 to 2 */
+        add_floor(s, roof, -10.5, 0.5, 5, 1.5); /* x -12 to -9 */
+    }
+    point_light(s, 0, 0, HIGH, (float)CANDELA);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static const noc_render_params dark = { NOC_RENDER_DEFAULTS(NOC_DEFAULT_IN_C) };
+
+static noc_measure_params without_sky(noc_render_params *render) {
+    *render = dark;
+    render->sky = 0;
+    noc_measure_params p = noc_measure_default_params();
+    p.render = render;
+    return p;
+}
+
+/* Kind of CIE 171's tests of direct light. A point's light is known to the last sample: its error is 0. */
+static void a_lamp_by_its_distance(void **state) {
+    (void)state;
+    static const double want[] = { 88.42, 75.49, 50.93, 31.26, 19.10, 12.04 };
+    noc_meter meters[6];
+    noc_reading readings[6];
+    noc_render_params render;
+    noc_measure_params params = without_sky(&render);
+    noc_measure_info info;
+    for (int i = 0; i < 6; i++)
+        meters[i] = (noc_meter){ .place = { i, 0, 0.0001 }, .normal = { 0, 0, 2 } };
+    noc_scene *s = lit_floor(false, NULL);
+    noc_view *v = own_view(s, 2, NULL);
+    assert_int_equal(noc_measure_points(v, meters, 6, &params, NULL, readings, &info), NOC_OK);
+    for (int i = 0; i < 6; i++) {
+        assert_true(fabs(readings[i].lux - want[i]) < 1e-3 * want[i]);
+        assert_true(readings[i].error < 1e-4 * want[i] && readings[i].share == 1);
+    }
+    assert_true(info.readings == 6 && info.short_of_it == 0);
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
+/* Of one lamp: (1 + cos a) sin e I / (pi d2), sin e I / (pi d2), (1 + cos e) I / (4 d2), each by many normals. */
+static void other_responses(void **state) {
+    (void)state;
+    const double at[3] = { 4, 3, 1.5 }, up = HIGH - at[2], flat = 5, d2 = flat * flat + up * up;
+    const double sine = flat / sqrt(d2), cosine = up / sqrt(d2), faces = 0.4; /* rad from the lamp's azimuth */
+    const double toward = atan2(-at[1], -at[0]);
+    const double want[NOC_RESPONSE_COUNT] = { CANDELA * sine * cos(faces) / d2,
+                                              (1 + cos(faces)) * sine * CANDELA / (M_PI * d2),
+                                              sine * CANDELA / (M_PI * d2), (1 + cosine) * CANDELA / (4 * d2) };
+    noc_render_params render;
+    noc_measure_params params = without_sky(&render);
+    params.error = 1e-3;
+    noc_scene *s = lit_floor(false, NULL);
+    noc_view *v = own_view(s, 2, NULL);
+    for (int r = 0; r < NOC_RESPONSE_COUNT; r++) {
+        noc_meter meter = { .place = { at[0], at[1], at[2] },
+                            .normal = { cos(toward + faces), sin(toward + faces), 0 },
+                            .response = (noc_response)r };
+        noc_reading reading;
+        assert_int_equal(noc_measure_points(v, &meter, 1, &params, NULL, &reading, NULL), NOC_OK);
+        assert_true(fabs(reading.lux - want[r]) < 2e-3 * want[r]);
+    }
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
+static noc_raster *raster_of(const noc_scene *s, int threads, const double extent[4], double step,
+                             noc_measure_info *info) {
+    noc_raster_params p = noc_raster_default_params();
+    noc_render_params render;
+    noc_measure_params params = without_sky(&render);
+    memcpy(p.extent, extent, sizeof(p.extent));
+    p.step = step;
+    p.height = 0;
+    noc_view *v = own_view(s, threads, NULL);
+    noc_raster *r = noc_measure_raster(v, &p, &params, NULL, info);
+    close_view(v);
+    return r;
+}
+
+/* Mean over a pixel, by a fine sum. */
+static double lux_over(double x, double y, double step) {
+    enum { FINE = 64 };
+    double sum = 0;
+    for (int i = 0; i < FINE * FINE; i++) {
+        double u = x + (i % FINE + 0.5) / FINE * step, w = y + (i / FINE + 0.5) / FINE * step;
+        double d2 = u * u + w * w + HIGH * HIGH;
+        sum += CANDELA * HIGH / (d2 * sqrt(d2));
+    }
+    return sum / (FINE * FINE);
+}
+
+/* Every pixel is its area's mean, what is covered has no number, and all of it is the flux that comes down. */
+static void a_raster_is_means_of_areas(void **state) {
+    (void)state;
+    noc_measure_info info;
+    noc_scene *s = lit_floor(true, NULL);
+    noc_raster *r = raster_of(s, 2, (const double[]){ -12, -4, 13.9, 6 }, 2, &info);
+    assert_non_null(r);
+    assert_true(r->width == 13 && r->height == 5 && r->west == -12 && r->north == 6 && !r->wkt);
+    double flux = 0, want = 0;
+    for (int i = 0; i < r->width * r->height; i++) {
+        double x = r->west + i % r->width * r->step, y = r->north - (i / r->width + 1) * r->step;
+        bool covered = (x == 10 || x == -12) && y == 0;
+        if (covered) {
+            assert_true(isnan(r->lux[i]) && isnan(r->error[i]) && r->share[i] == 0);
+            continue;
+        }
+        if (x > 6 || x < -8) /* part of it is covered, or lies in a shadow */
+            continue;
+        double mean = lux_over(x, y, r->step);
+        assert_true(fabs(r->lux[i] - mean) < 5 * r->error[i] + 1e-4 * mean);
+        assert_true(r->share[i] == 1);
+        flux += r->lux[i] * r->step * r->step;
+        want += mean * r->step * r->step;
+    }
+    assert_true(fabs(flux - want) < 0.01 * want);
+    noc_raster_destroy(r);
+    noc_scene_destroy(s);
+}
+
+/* A pixel of the lattice is the same in every raster that has it. */
+static void cuts_and_threads_change_nothing(void **state) {
+    (void)state;
+    noc_scene *s = lit_floor(true, NULL);
+    noc_raster *whole = raster_of(s, 3, (const double[]){ -40, -40, 40, 40 }, 1, NULL);
+    noc_raster *part = raster_of(s, 1, (const double[]){ -7, -30, 33, 9 }, 1, NULL);
+    assert_true(whole && part && part->width == 40 && part->height == 39);
+    for (int y = 0; y < part->height; y++)
+        for (int x = 0; x < part->width; x++) {
+            int i = y * part->width + x, at = (y + 31) * whole->width + x + 33;
+            assert_memory_equal(&part->lux[i], &whole->lux[at], sizeof(float));
+            assert_memory_equal(&part->error[i], &whole->error[at], sizeof(float));
+        }
+    noc_raster_destroy(whole);
+    noc_raster_destroy(part);
+    noc_scene_destroy(s);
+}
+
+static void figures_of_readings(void **state) {
+    (void)state;
+    const float lux[] = { 4, NAN, 1, 10 }, share[] = { 1, 0, 0.5f, 0.5f };
+    noc_lux_figures f;
+    assert_int_equal(noc_lux_figures_of(lux, share, 4, &f, NULL), NOC_OK);
+    assert_true(f.readings == 3 && f.least == 1 && f.most == 10 && f.median == 4 && f.low == 1 && f.high == 10);
+    assert_true(f.mean == (4 + 0.5 + 5) / 2 && f.uniformity == 1 / f.mean);
+    assert_int_equal(noc_lux_figures_of(lux, NULL, 4, &f, NULL), NOC_OK);
+    assert_true(f.mean == 5);
+    assert_int_equal(noc_lux_figures_of(lux + 1, NULL, 1, &f, NULL), NOC_OK);
+    assert_true(f.readings == 0 && isnan(f.mean) && isnan(f.uniformity));
+}
+
+static void what_makes_no_sense_is_refused(void **state) {
+    (void)state;
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
+    noc_scene *s = lit_floor(false, log);
+    noc_view *v = own_view(s, 1, log);
+    noc_reading r;
+    const noc_meter flat = { .normal = { 0, 0, 0 } }, away = { .place = { NAN, 0, 0 }, .normal = { 0, 0, 1 } };
+    const noc_meter half = { .normal = { 0, 0, 1 }, .response = NOC_RESPONSE_SEMICYLINDER };
+    noc_measure_params p = noc_measure_default_params();
+    noc_raster_params raster = noc_raster_default_params();
+    assert_int_equal(noc_measure_points(v, &flat, 1, NULL, NULL, &r, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_measure_points(v, &away, 1, NULL, NULL, &r, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_measure_points(v, &half, 1, NULL, NULL, &r, NULL), NOC_ERR_ARGUMENT);
+    p.samples = 7;
+    assert_int_equal(noc_measure_points(v, &flat, 1, &p, NULL, &r, NULL), NOC_ERR_ARGUMENT);
+    memcpy(raster.extent, (const double[]){ 0, 0, 1e6, 1e6 }, sizeof(raster.extent));
+    assert_null(noc_measure_raster(v, &raster, NULL, NULL, NULL)); /* 1e12 pixels */
+    raster = noc_raster_default_params();
+    raster.crs = "EPSG:25832";
+    assert_null(noc_measure_raster(v, &raster, NULL, NULL, NULL)); /* the scene lies nowhere */
+    assert_non_null(strstr(told, "faces nowhere"));
+    assert_non_null(strstr(told, "a smaller extent, or larger pixels"));
+    assert_non_null(strstr(told, "has no CRS"));
+    close_view(v);
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+}
+
+static bool stop(void *user, const char *what, double done) {
+    (void)user;
+    (void)what;
+    return done < 0.5;
+}
+
+static void it_can_be_stopped(void **state) {
+    (void)state;
+    noc_scene *s = lit_floor(false, NULL);
+    noc_view *v = own_view(s, 1, NULL);
+    noc_raster_params raster = noc_raster_default_params();
+    memcpy(raster.extent, (const double[]){ -64, -64, 64, 64 }, sizeof(raster.extent));
+    assert_null(noc_measure_raster(v, &raster, NULL, &(noc_progress){ stop, NULL }, NULL));
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
+#if NOC_HAVE_GDAL
+/* What GDAL reads of a file is what was written. */
+static void a_geotiff_has_place_units_and_numbers(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    int road =
+        noc_scene_add_material(s,
+                               &(noc_material){ .albedo = { .1f, .1f, .1f }, .roughness = 1, .cls = NOC_CLASS_ROAD });
+    assert_int_equal(noc_scene_set_crs(s, "EPSG:25832", (double[3]){ 678000, 5403000, 0 }), NOC_OK);
+    add_floor(s, road, 0, 0, 0, 30);
+    point_light(s, 0, 0, HIGH, (float)CANDELA);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_raster *r = raster_of(s, 1, (const double[]){ 677990, 5402990, 678050, 5403010 }, 1, NULL);
+    assert_non_null(r);
+    assert_non_null(r->wkt);
+    const char *const items[][2] = { { "NOCTURNE_SKY_CD_M2", "0" }, { NULL, NULL } };
+    const char *path = in_folder("lux.tif");
+    assert_int_equal(noc_raster_write(r, path, items, NULL), NOC_OK);
+    assert_null(gdal_load());
+    GDALDatasetH d = gdal.GDALOpenEx(path, GDAL_OF_RASTER, NULL, NULL, NULL);
+    assert_non_null(d);
+    double place[6];
+    assert_int_equal(gdal.GDALGetGeoTransform(d, place), CE_None);
+    assert_true(place[0] == 677990 && place[1] == 1 && place[3] == 5403010 && place[5] == -1);
+    assert_string_equal(gdal.OSRGetAuthorityCode(gdal.GDALGetSpatialRef(d), NULL), "25832");
+    assert_int_equal(gdal.GDALGetRasterCount(d), 3);
+    float lux[60 * 20];
+    GDALRasterBandH band = gdal.GDALGetRasterBand(d, 1);
+    assert_string_equal(gdal.GDALGetRasterUnitType(band), "lx");
+    assert_true(isnan(gdal.GDALGetRasterNoDataValue(band, NULL)));
+    assert_int_equal(gdal.GDALRasterIO(band, GF_Read, 0, 0, 60, 20, lux, 60, 20, GDT_Float32, 0, 0), CE_None);
+    assert_memory_equal(lux, r->lux, sizeof(lux));
+    assert_true(isnan(lux[59]) && lux[10 * 60 + 10] > 80); /* beyond the floor; under the lamp */
+    gdal.GDALClose(d);
+    noc_raster_destroy(r);
+    noc_scene_destroy(s);
+}
+#endif
+
+static int make_folder(void **state) {
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int leave_folder(void **state) {
+    (void)state;
+    return remove_folder();
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lamp_by_its_distance),
+        cmocka_unit_test(other_responses),
+        cmocka_unit_test(a_raster_is_means_of_areas),
+        cmocka_unit_test(cuts_and_threads_change_nothing),
+        cmocka_unit_test(figures_of_readings),
+        cmocka_unit_test(what_makes_no_sense_is_refused),
+        cmocka_unit_test(it_can_be_stopped),
+#if NOC_HAVE_GDAL
+        cmocka_unit_test(a_geotiff_has_place_units_and_numbers),
+#endif
+    };
+    return cmocka_run_group_tests(tests, make_folder, leave_folder);
+}
