@@ -23,6 +23,57 @@ const noc_option *cli_exposure_options(void) {
     return rows;
 }
 
+const char *const cli_of_pictures[] = { "jitter",
+                                        "accumulate",
+                                        "emitters",
+                                        "method",
+                                        "candidates",
+                                        "draws",
+                                        "list",
+                                        "tail",
+                                        "shadow-rays",
+                                        "learn",
+                                        "influence",
+                                        "influence-boxes",
+                                        "influence-cluster",
+                                        "uniform-every",
+                                        "rays",
+                                        "final-ray",
+                                        "temporal",
+                                        "spatial",
+                                        "neighbours",
+                                        "radius",
+                                        "passes",
+                                        "history",
+                                        "bias",
+                                        "bias-rays",
+                                        "visibility-reuse",
+                                        "reject-depth",
+                                        "reject-normal",
+                                        "isa",
+                                        NULL };
+
+int cli_parse_classes(const cli_command *command, const char *option, const char *text, uint32_t *bits) {
+    const char *names[NOC_CLASS_COUNT];
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        names[c] = noc_class_name((noc_class)c);
+    for (const char *p = text; p && *p;) {
+        char word[32];
+        size_t n = strcspn(p, ",");
+        int cls = 0;
+        snprintf(word, sizeof(word), "%.*s", (int)(n < 31 ? n : 31), p);
+        while (cls < NOC_CLASS_COUNT && strcmp(word, names[cls]))
+            cls++;
+        const char *nearest = cls < NOC_CLASS_COUNT ? NULL : noc_text_nearest(word, names, NOC_CLASS_COUNT);
+        if (cls == NOC_CLASS_COUNT)
+            return cli_usage(command, "%s: no class \"%s\"%s%s%s", option, word, nearest ? "; is it " : "",
+                             nearest ? nearest : "", nearest ? "?" : "");
+        *bits |= 1u << cls;
+        p += n + (p[n] == ',');
+    }
+    return CLI_OK;
+}
+
 static int check_builtin(const render_args *args) {
     for (size_t i = 0; i < args->common.given_count; i++) {
         const noc_option *o = args->common.given[i];

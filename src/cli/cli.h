@@ -44,7 +44,7 @@ typedef struct cli_command {
     int (*run)(void *args); /* returns the exit status */
 } cli_command;
 
-extern const cli_command cli_render, cli_view, cli_influence, cli_build, cli_info, cli_init, cli_compare,
+extern const cli_command cli_render, cli_view, cli_influence, cli_measure, cli_build, cli_info, cli_init, cli_compare,
     cli_experiment, cli_bench, cli_devices;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);

@@ -41,37 +41,6 @@ static const influence_args defaults = {
     .time = 10,
     .error = 0.01,
 };
-/* The estimate is of its own. */
-static const char *const of_pictures[] = { "jitter",
-                                           "accumulate",
-                                           "emitters",
-                                           "method",
-                                           "candidates",
-                                           "draws",
-                                           "list",
-                                           "tail",
-                                           "shadow-rays",
-                                           "learn",
-                                           "influence",
-                                           "influence-boxes",
-                                           "influence-cluster",
-                                           "uniform-every",
-                                           "rays",
-                                           "final-ray",
-                                           "temporal",
-                                           "spatial",
-                                           "neighbours",
-                                           "radius",
-                                           "passes",
-                                           "history",
-                                           "bias",
-                                           "bias-rays",
-                                           "visibility-reuse",
-                                           "reject-depth",
-                                           "reject-normal",
-                                           "isa",
-                                           NULL };
-
 const cli_command cli_influence = {
     "influence",
     "INPUT... --region REGION | --lamp ID",
@@ -87,7 +56,7 @@ const cli_command cli_influence = {
       { noc_device_options, offsetof(A, render.device), NULL },
       { cli_camera_options, offsetof(A, render), NULL },
       { noc_camera_options, offsetof(A, render.camera), NULL },
-      { noc_render_options, offsetof(A, render.render), of_pictures },
+      { noc_render_options, offsetof(A, render.render), cli_of_pictures },
       { noc_import_options, offsetof(A, render.import), NULL },
       { noc_city_options, offsetof(A, render.builtin.city), NULL },
       { noc_builtin_options, offsetof(A, render.builtin), NULL },
@@ -96,27 +65,6 @@ const cli_command cli_influence = {
     &defaults,
     run,
 };
-
-static int parse_classes(influence_args *args) {
-    const char *names[NOC_CLASS_COUNT];
-    for (int c = 0; c < NOC_CLASS_COUNT; c++)
-        names[c] = noc_class_name((noc_class)c);
-    for (const char *p = args->classes; p && *p;) {
-        char word[32];
-        size_t n = strcspn(p, ",");
-        int cls = 0;
-        snprintf(word, sizeof(word), "%.*s", (int)(n < 31 ? n : 31), p);
-        while (cls < NOC_CLASS_COUNT && strcmp(word, names[cls]))
-            cls++;
-        const char *nearest = cls < NOC_CLASS_COUNT ? NULL : noc_text_nearest(word, names, NOC_CLASS_COUNT);
-        if (cls == NOC_CLASS_COUNT)
-            return cli_usage(&cli_influence, "--class: no class \"%s\"%s%s%s", word, nearest ? "; is it " : "",
-                             nearest ? nearest : "", nearest ? "?" : "");
-        args->class_bits |= 1u << cls;
-        p += n + (p[n] == ',');
-    }
-    return CLI_OK;
-}
 
 static int check_regions(const influence_args *args) {
     size_t count = args->regions.count;
@@ -140,7 +88,7 @@ static int check(influence_args *args) {
         return status;
     if (args->json && influence_csv_alone(args))
         return cli_usage(&cli_influence, "--json and --csv - exclude each other: both write to standard output");
-    status = parse_classes(args);
+    status = cli_parse_classes(&cli_influence, "--class", args->classes, &args->class_bits);
     status = status ? status : cli_choose_camera(render);
     if (status)
         return status;

@@ -10,9 +10,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-const cli_command *const cli_commands[] = { &cli_render, &cli_view,    &cli_influence,  &cli_build, &cli_info,
-                                            &cli_init,   &cli_compare, &cli_experiment, &cli_bench, &cli_devices,
-                                            NULL };
+const cli_command *const cli_commands[] = { &cli_render,     &cli_view,  &cli_influence, &cli_measure,
+                                            &cli_build,      &cli_info,  &cli_init,      &cli_compare,
+                                            &cli_experiment, &cli_bench, &cli_devices,   NULL };
 
 const cli_command *cli_find_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)

@@ -102,6 +102,11 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
 /* city.c: what render and view share. */
 const noc_option *cli_camera_options(void); /* --camera, which names one of the recipe */
 const noc_option *cli_exposure_options(void);
+/* Options of pictures, for commands whose estimate is one of its own. */
+extern const char *const cli_of_pictures[];
+/* Sets the bit 1u << noc_class of each class that the text names, NULL: of none. CLI_OK, or CLI_USAGE after reporting
+ * one that there is not. */
+int cli_parse_classes(const cli_command *command, const char *option, const char *text, uint32_t *bits);
 /* All that can be wrong with inputs, camera, preset, exposure and device, before any file is read; once the camera is
  * chosen. CLI_OK, or an exit status after reporting. */
 int cli_check_city(render_args *args);

@@ -58,7 +58,7 @@ mkdir files home
 mkdir files/folder
 cat >offers <<'OFFERS'
 nocturne comp: compare
-nocturne : bench build compare devices experiment help influence info init render view
+nocturne : bench build compare devices experiment help influence info init measure render view
 nocturne help co: compare
 nocturne render --method re: reference restir
 nocturne render --method=re: reference restir

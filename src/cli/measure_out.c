@@ -1,0 +1,185 @@
+/* nocturne measure: figures of regions and of the raster. */
+#include "measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is told of a set of readings. */
+typedef struct told {
+    const char *what; /* the region, or the raster's file */
+    double area;      /* m2; 0: it has none */
+    noc_lux_figures figures;
+    noc_measure_info info;
+} told;
+
+static void json_figure(const char *name, double v) {
+    printf(",\n  \"%s\": ", name);
+    cli_json_number(stdout, v);
+}
+
+static void print_json(measure_job *job, const told *t) {
+    const noc_lux_figures *f = &t->figures;
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = { { "readings", (double)f->readings },
+                 { "area", t->area > 0 ? t->area : NAN },
+                 { "mean", f->mean },
+                 { "mean_error", t->info.mean_error },
+                 { "minimum", f->least },
+                 { "maximum", f->most },
+                 { "uniformity", f->uniformity },
+                 { "percentile_5", f->low },
+                 { "median", f->median },
+                 { "percentile_95", f->high },
+                 { "reading_error", t->info.error },
+                 { "readings_over_error", (double)t->info.short_of_it },
+                 { "maintenance", job->info.maintenance },
+                 { "sky", job->args->render.render.sky },
+                 { "seconds", t->info.seconds } };
+    printf("%s{\"nocturne\": \"%s\", \"measured\": ", job->lead, noc_version());
+    cli_json_text(stdout, t->what);
+    printf(",\n  \"crs\": ");
+    cli_json_text(stdout, job->info.given_crs);
+    printf(",\n  \"windows_counted\": %s", job->args->count_windows ? "true" : "false");
+    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
+        json_figure(rows[i].name, rows[i].value);
+    printf("}");
+}
+
+static void print_text(measure_job *job, const told *t) {
+    const noc_lux_figures *f = &t->figures;
+    char count[32], area[32], time[32];
+    printf("%s%s: %s readings", job->lead, t->what, noc_text_count(count, f->readings));
+    if (t->area > 0)
+        printf(" on %s m2", cli_number(area, t->area));
+    printf(" in %s\n", noc_text_seconds(time, t->info.seconds));
+    if (f->readings) {
+        printf("  mean        %.4g lx ± %.2g\n", f->mean, t->info.mean_error);
+        printf("  minimum     %.4g lx\n", f->least);
+        printf("  maximum     %.4g lx\n", f->most);
+        if (isfinite(f->uniformity))
+            printf("  Uo          %.3f, minimum over mean\n", f->uniformity);
+        printf("  percentiles %.4g lx (5 %%), %.4g lx (50 %%), %.4g lx (95 %%)\n", f->low, f->median, f->high);
+        printf("  error       %.2g %% of a reading (median); %s over %.3g %%\n", 100 * t->info.error,
+               noc_text_count(count, t->info.short_of_it), 100 * job->params.error);
+    }
+    if (job->info.maintenance != 1)
+        printf("  lamps give %g of their flux (--maintenance)\n", job->info.maintenance);
+    printf("  windows %s\n", job->args->count_windows ? "count" : "are dark (--count-windows)");
+}
+
+static void tell(measure_job *job, const told *t) {
+    if (job->args->json)
+        print_json(job, t);
+    else
+        print_text(job, t);
+    job->lead = job->args->json ? ",\n" : "\n";
+}
+
+/* ---- regions ---- */
+
+/* Its parts are points: a place, or one in each cell of the ground. */
+static noc_status find_meters(measure_job *job, const char *text, noc_meter **meters, noc_region_info *info) {
+    const noc_render_params *render = &job->args->render.render;
+    noc_region_params of = {
+        .camera = &job->camera, .width = render->width, .height = render->height, .crs = job->args->crs, .files = true
+    };
+    noc_region *region = noc_region_find(job->view, job->scene, text, &of, job->log);
+    if (!region)
+        return NOC_ERR_ARGUMENT;
+    noc_region_get_info(region, info);
+    *meters = cli_alloc(info->patches * sizeof(**meters));
+    for (size_t i = 0; i < info->patches; i++) {
+        noc_patch p;
+        noc_region_get_patch(region, i, &p);
+        for (int k = 0; k < 3; k++) {
+            (*meters)[i].place[k] = p.p[k] + job->args->height * p.n[k];
+            (*meters)[i].normal[k] = p.n[k];
+        }
+    }
+    noc_region_destroy(region);
+    return NOC_OK;
+}
+
+static noc_status measure_region(measure_job *job, const char *text) {
+    noc_meter *meters = NULL;
+    noc_region_info info;
+    told t = { .what = text };
+    noc_status status = find_meters(job, text, &meters, &info);
+    if (status)
+        return status;
+    noc_reading *readings = cli_alloc(info.patches * sizeof(*readings));
+    float *lux = cli_alloc(info.patches * sizeof(*lux));
+    status = noc_measure_points(job->view, meters, info.patches, &job->params, &job->progress, readings, &t.info);
+    cli_progress_clear();
+    for (size_t i = 0; i < info.patches; i++)
+        lux[i] = (float)readings[i].lux;
+    status = status ? status : noc_lux_figures_of(lux, NULL, info.patches, &t.figures, job->log);
+    t.area = strncmp(text, "street:", 7) && strncmp(text, "polygon:", 8) ? 0 : info.weight;
+    if (!status)
+        tell(job, &t);
+    free(lux);
+    free(readings);
+    free(meters);
+    return status;
+}
+
+noc_status measure_regions(measure_job *job) {
+    const noc_texts *regions = &job->args->regions;
+    bool array = job->args->json && regions->count > 1;
+    noc_status status = NOC_OK;
+    job->lead = array ? "[\n" : "";
+    for (size_t i = 0; i < regions->count && !status; i++)
+        status = measure_region(job, regions->text[i]);
+    if (job->args->json && *job->lead == ',')
+        puts(array ? "\n]" : "");
+    return status;
+}
+
+/* ---- the raster ---- */
+
+static noc_status tell_raster(measure_job *job, const noc_raster *r, told *t) {
+    size_t area = (size_t)r->width * (size_t)r->height;
+    noc_status status = noc_lux_figures_of(r->lux, r->share, area, &t->figures, job->log);
+    if (status)
+        return status;
+    if (!t->figures.readings)
+        cli_log_message(NULL, NOC_LOG_WARN, "no pixel of the raster has such ground: all of it is nodata");
+    if (!job->args->json)
+        printf("%s%d x %d pixels of %g: ", job->lead, r->width, r->height, r->step);
+    job->lead = job->args->json ? job->lead : "";
+    tell(job, t);
+    if (job->args->json)
+        puts("");
+    return NOC_OK;
+}
+
+noc_status measure_raster(measure_job *job) {
+    const measure_args *args = job->args;
+    told t = { .what = args->render.output };
+    char sky[32], maintenance[32], error[32], key[NOC_CONTENT_KEY];
+    job->lead = job->lead ? job->lead : "";
+    noc_raster *r = noc_measure_raster(job->view, &job->raster, &job->params, &job->progress, &t.info);
+    cli_progress_clear();
+    if (!r)
+        return NOC_ERR_FORMAT;
+    noc_scene_content(job->scene, key);
+    snprintf(sky, sizeof(sky), "%.6g", args->render.render.sky);
+    snprintf(maintenance, sizeof(maintenance), "%g", job->info.maintenance);
+    snprintf(error, sizeof(error), "%g", args->error);
+    const char *const items[][2] = { { "TIFFTAG_SOFTWARE", "nocturne" },
+                                     { "NOCTURNE_VERSION", noc_version() },
+                                     { "NOCTURNE_SCENE", key },
+                                     { "NOCTURNE_SKY_CD_M2", sky },
+                                     { "NOCTURNE_MAINTENANCE", maintenance },
+                                     { "NOCTURNE_WINDOWS", args->count_windows ? "counted" : "dark" },
+                                     { "NOCTURNE_BOUNCES", "0" },
+                                     { "NOCTURNE_ERROR", error },
+                                     { NULL, NULL } };
+    noc_status status = noc_raster_write(r, args->render.output, items, job->log);
+    status = status ? status : tell_raster(job, r, &t);
+    noc_raster_destroy(r);
+    return status;
+}

@@ -1,0 +1,109 @@
+#!/bin/sh
+# nocturne measure: lux of the ground as a GeoTIFF, at points as CSV, and figures of regions.
+. "$(dirname "$0")/lib.sh"
+cat >map.osm <<'OSM'
+<?xml version="1.0"?><osm version="0.6">
+<node id="1" lat="52.5000000" lon="13.4000000"/><node id="2" lat="52.5000000" lon="13.4010000"/>
+<node id="11" lat="52.5000300" lon="13.4002000"><tag k="highway" v="street_lamp"/></node>
+<node id="12" lat="52.5000300" lon="13.4006000"><tag k="highway" v="street_lamp"/></node>
+<way id="21"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/><tag k="name" v="Well Lane"/></way>
+</osm>
+OSM
+gdal=true
+"$program" --version | grep -qi 'gdal' || gdal=false
+
+if $gdal; then
+    run measure map.osm --map-surfaces -q --sky 0 --on road -o lux.tif --threads 1
+    [ "$status" = 0 ] && grep -Eq '^[0-9]+ x [0-9]+ pixels of 1: lux.tif: [0-9,]+ readings in ' out &&
+        grep -Eq '^  mean +[0-9.]+ lx ± [0-9.e-]+$' out && [ "$(head -c 2 lux.tif)" = II ]
+    result $? "the ground of a map as a raster"
+    cp out first
+    run measure map.osm --map-surfaces -q --sky 0 --on road -o again.tif --threads 2
+    cmp -s lux.tif again.tif && [ "$(sed -n 2,6p out)" = "$(sed -n 2,6p first)" ]
+    result $? "the same bytes for any number of threads"
+
+    run measure map.osm --map-surfaces -q --sky 0 --on road -o lux.tif --json --grid 2 --t-srs EPSG:25833
+    cp out raster.json
+    run measure map.osm --map-surfaces -q --sky 0 --region "street:Well Lane" --json && cp out street.json
+    run influence map.osm --map-surfaces -q --sky 0 --region "street:Well Lane" --json && cp out who.json
+    python3 - <<'PY'
+import json
+raster, street, who = (json.load(open(name + '.json')) for name in ('raster', 'street', 'who'))
+assert raster['windows_counted'] is False and raster['sky'] == 0 and street['area'] == who['area'], street
+near = lambda a, ea, b, eb: abs(a - b) <= 4 * (ea * ea + eb * eb) ** .5 + .01 * b
+assert near(street['mean'], street['mean_error'], who['lux'], who['lux_error']), (street, who['lux'])
+assert near(raster['mean'], raster['mean_error'], who['lux'], who['lux_error']), (raster, who['lux'])
+for j in raster, street:
+    assert 0 < j['minimum'] < j['percentile_5'] < j['median'] < j['percentile_95'] < j['maximum'], j
+    assert abs(j['uniformity'] - j['minimum'] / j['mean']) < 1e-9
+PY
+    result $? "raster, street and nocturne influence agree"
+
+    start measure map.osm --map-surfaces --sky 0 --grid 0.02 --error 0.0001 -o never.tif
+    sleep 1
+    kill -INT "$pid"
+    wait "$pid"
+    [ $? = 130 ] && [ ! -e never.tif ] && [ -z "$(find . -name '*never*')" ]
+    result $? "interrupted, it leaves nothing"
+else
+    for what in "the ground of a map as a raster" "the same bytes for any number of threads" \
+        "raster, street and nocturne influence agree" "interrupted, it leaves nothing"; do
+        skip "$what" "without GDAL"
+    done
+fi
+
+# A lamp of 1 x 1 m of 100 cd/m2, 2 m over a floor: form factor to a parallel rectangle, four of .5 x .5 m
+lamp_model
+cat >points.txt <<'TXT'
+# x y z nx ny nz
+0 0 0.001 0 0 1
+0,0,0.001
+
+	0 0 0.001  0 0 -1
+TXT
+run measure lamp.obj -q --sky 0 --points points.txt -o - && cp out readings.csv
+run influence lamp.obj -q --sky 0 --region point:0,0,0.001 --json && cp out who.json
+python3 - <<'PY'
+import csv, json
+rows = list(csv.DictReader(open('readings.csv')))
+who = json.load(open('who.json'))
+assert len(rows) == 3 and list(rows[0]) == 'x y z nx ny nz lux error samples'.split(), rows
+lux, error = (float(rows[0][k]) for k in ('lux', 'error'))
+off = abs(lux - who['lux'])
+assert off <= 4 * (error ** 2 + who['lux_error'] ** 2) ** .5 + 1e-3 * lux and lux > 1, (rows[0], who['lux'])
+assert rows[1]['nz'] == '1' and abs(float(rows[1]['lux']) - lux) <= 6 * error + 1e-3 * lux, rows[1]
+assert float(rows[2]['lux']) == 0, rows[2]
+PY
+result $? "points in, readings out"
+printf '0 0 0.001\n' | "$program" measure lamp.obj -q --points - --response hemisphere >out 2>err &&
+    [ "$(wc -l <out)" = 2 ]
+result $? "points come by a pipe"
+
+mean() {
+    "$program" measure builtin:city -q --json --region "street:street 1" "$@" | sed -n 's/.*"mean": \([0-9.]*\),/\1/p'
+}
+lamps=$(mean --no-count-windows) all=$(mean --count-windows)
+awk "BEGIN { exit !($lamps > 1 && $all > 1.02 * $lamps) }"; result $? "windows are dark unless they count" "$lamps $all"
+
+expect "nothing is asked for" 2 'what is to be measured\? -o lux.tif, --points FILE' measure builtin:city
+expect "a raster is a GeoTIFF" 2 'lux.png must end in .tif' measure builtin:city -o lux.png
+expect "a GeoTIFF is a file" 2 'a GeoTIFF is a file' measure builtin:city -o -
+expect "an extent has four numbers" 2 '"1,2,3", must be west,south,east,north' measure builtin:city -o a.tif --te 1,2,3
+expect "an extent has an inside" 2 'west is less than east' \
+    measure builtin:city -o a.tif --te 1,2,0,5
+expect "classes have names" 2 '--on: no class "raod"; is it road\?' measure builtin:city -o a.tif --on raod
+expect "objects have surfaces" 2 "nocturne influence has their mean" measure builtin:city --region object:x
+expect "responses are for points" 2 '--response is for --points' measure builtin:city -o a.tif --response cylinder
+expect "a raster has an end" 1 'a smaller extent, or larger pixels' \
+    measure builtin:city -q -o a.tif --te=-1e6,-1e6,1e6,1e6
+expect "a scene without a CRS has no other one" 1 'has no CRS' \
+    measure builtin:single -q -o a.tif --t-srs EPSG:25832
+printf '1 2\n' >bad.txt
+expect "a point has three numbers" 1 'bad.txt:1: "1 2 ?" is not x y z' measure builtin:single -q --points bad.txt
+printf '1 2 3\n1 2 3 0 0 0\n' >bad.txt
+expect "a normal is not 0" 1 'bad.txt:2: the normal is 0' measure builtin:single -q --points bad.txt
+printf '# none\n' >bad.txt
+expect "there are points" 1 'there are no points in it' measure builtin:single -q --points bad.txt
+expect "points are there" 1 'nowhere.txt: cannot be read: No such file' measure builtin:single -q --points nowhere.txt
+[ ! -e a.tif ]; result $? "what fails writes nothing"
+finish
