@@ -139,6 +139,16 @@ void noc_make_frame_constants(const noc_render_params *params, uint32_t frame, b
 /* Those of them that are of the scene's map, where it has one. */
 void noc_make_frame_environment(const noc_scene *scene, const noc_render_params *params, frame_constants *out);
 
+/* hit.c */
+/* What a ray met: a triangle of the scene (NO_INSTANCE: of the world), at these barycentric coordinates of its second
+ * and third corner. */
+typedef struct noc_met {
+    uint32_t triangle, instance;
+    float u, v;
+} noc_met;
+double noc_ray_length(const noc_ray *ray); /* of its direction */
+void noc_describe_hit(const noc_scene *scene, const noc_ray *ray, const noc_met *met, noc_hit *out);
+
 /* isa.c */
 #define NOC_ISA_VARIABLE "NOCTURNE_ISA"
 /* What auto stands for here, or the level asked for; reports one that is unknown or not of this processor, from the
