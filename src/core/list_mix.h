@@ -14,4 +14,7 @@ FN real list_reused(real m, f1 frame) {
     return share;
 }
 
+/* Returns true if less than two frames of `draws` candidates stand behind a reservoir of the frame before. */
+FN mask list_is_fresh(real m, f1 draws) { return not_(m >= K(2.0f * draws)); }
+
 #endif

@@ -3,6 +3,7 @@
 #include "backend/cpu/cpu.h"
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/influence_cut.h"
+#include "core/measured.h"
 #include "core/presample_limits.h"
 
 _Static_assert((int)CUT_SIXTEENS == TILE_BLOCKS * TILE_BLOCKS && CUT_SIXTEENS <= INFLUENCE_SETS,
@@ -66,7 +67,7 @@ static void note_density(const drawing *d, size_t block, int to, int from, const
     const presample_row *set = d->w->picks->set;
     for (int i = 0; density && r->w[from] > 0 && i < d->m; i++)
         if (set[i].light[from] == r->light[from])
-            density[block][to] = (float)d->m / set[i].inverse[from];
+            density[block][to] = expected_draws((u1)d->m, set[i].inverse[from]);
 }
 
 static void choose(const drawing *d, const influence_sixteen *s) {

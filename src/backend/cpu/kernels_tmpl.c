@@ -2,6 +2,7 @@
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/headlight.h"
+#include "core/measured.h"
 #include "core/primary.h"
 #include "core/shading.h"
 
@@ -134,7 +135,7 @@ static uint32_t sky_light(const struct core_context *ctx, const gblock *g, const
 /* ---- illuminance ---- */
 
 static void add_lux(float *lux, int l, real e, uint32_t lanes) {
-    mask on = and_(mload(lanes, l), and_(e >= K(0.0f), e < K(1e30f)));
+    mask on = and_(mload(lanes, l), lux_adds(e));
     rstore(lux + l, rload(lux + l) + sel(on, e, K(0.0f)));
 }
 

@@ -3,6 +3,7 @@
  */
 #include "backend/cpu/cpu.h"
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/list_mix.h"
 #include "core/neighbours.h"
 
 /* Lane `from` of a pixel's surface and reservoir into lane `to` of n. Blocks are arrays of BLOCK four-byte values. */
@@ -133,7 +134,6 @@ static void start(const stage_run *run, const tile_block *block, int set, combin
 static bool has_history(const stage_run *run) { return run->ctx.frame->flags & FRAME_HISTORY && !run->s->past.lost; }
 
 void noc_cpu_seen_before(stage_run *run, worker *w, tile t) {
-    const float two = 2 * (float)run->ctx.frame->draws;
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks);
     combining *c = w->combining;
@@ -144,7 +144,7 @@ void noc_cpu_seen_before(stage_run *run, worker *w, tile t) {
         if (!has_history(run) || !fetch_history(run, c))
             continue;
         for (int l = 0; l < BLOCK; l++)
-            *fresh &= ~((uint32_t)(c->n->r.m[l] >= two) << l);
+            *fresh &= ~(lane_bits(not_(list_is_fresh(c->n->r.m[l], (f1)run->ctx.frame->draws))) << l);
     }
 }
 

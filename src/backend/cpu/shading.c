@@ -7,18 +7,18 @@
 static float expected(const stage_run *run, const worker *w, uint32_t id, int l) {
     const noc_plan *p = run->frame->plan;
     if (p->candidates == NOC_CANDIDATES_UNIFORM)
-        return (float)p->candidate_count / (float)run->ctx.light_count;
+        return expected_draws((u1)p->candidate_count, (float)run->ctx.light_count);
     if (p->candidates == NOC_CANDIDATES_POWER)
-        return (float)p->candidate_count / run->ctx.alias->slots[id].inverse;
+        return expected_draws((u1)p->candidate_count, run->ctx.alias->slots[id].inverse);
     if (p->candidates == NOC_CANDIDATES_LISTS) {
         const light_list *list = &w->lists->build.list;
         for (uint32_t i = 0; i < list->count; i++)
             if (list->light[i] == id)
-                return 1 / (list->weight[i] * (float)list->copies);
+                return expected_entries(list->weight[i], list->copies);
     } else {
         for (int i = 0; i < p->candidate_count; i++)
             if (w->picks->drawn.light[i][l] == id && w->picks->drawn.inverse[i][l] > 0)
-                return (float)p->candidate_count / w->picks->drawn.inverse[i][l];
+                return expected_draws((u1)p->candidate_count, w->picks->drawn.inverse[i][l]);
     }
     return -1;
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
+#include "core/measured.h"
 #include "core/shading.h"
 #include "surfaces.glsl"
 #include "presample.glsl"
@@ -19,13 +20,10 @@ void main() {
         q = ris_presampled_twice(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
     }
     if ((HERE.views & VK_VIEW_DENSITY) != 0u && q.w > 0.0) {
-        EXACT float density = float(HERE.draws) / float(HERE.light_count);
-        EXACT float by_power = float(HERE.draws);
-        if (HERE.by_power != 0u) {
-            by_power = by_power / alias_load(q.light).inverse;
-            density = by_power;
-        }
-        HERE.view_density.at[p.slot] = density;
+        float inverse = float(HERE.light_count);
+        if (HERE.by_power != 0u)
+            inverse = alias_load(q.light).inverse;
+        HERE.view_density.at[p.slot] = expected_draws(HERE.draws, inverse);
     }
     reservoir_put(HERE.target, p.block, p.lane, q);
     HERE.target_visible.at[p.slot] = 0u;

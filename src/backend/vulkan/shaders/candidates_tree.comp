@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
+#include "core/measured.h"
 #include "core/shading.h"
 #include "core/tree.h"
 #include "surfaces.glsl"
@@ -33,10 +34,8 @@ pick pick_load(int i) {
 float expected(uint light) {
     for (uint i = 0u; i < HERE.draws; i++) {
         pick drawn = pick_load(int(i));
-        if (drawn.light == light && drawn.inverse > 0.0) {
-            EXACT float density = float(HERE.draws) / drawn.inverse;
-            return density;
-        }
+        if (drawn.light == light && drawn.inverse > 0.0)
+            return expected_draws(HERE.draws, drawn.inverse);
     }
     return -1.0;
 }

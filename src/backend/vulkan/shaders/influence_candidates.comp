@@ -4,6 +4,7 @@
 #include "bridge.glsl"
 #include "pixel.glsl"
 #include "list_pixel.glsl"
+#include "core/measured.h"
 #include "core/shading.h"
 #include "surfaces.glsl"
 #include "influence.glsl"
@@ -42,10 +43,8 @@ void main() {
         q = ris_presampled(surf_at(HERE.surfaces, p.block, p.lane, eye_now()), xi, int(HERE.draws));
         if ((HERE.views & VK_VIEW_LIGHTS) != 0u)
             HERE.view_lights.at[p.slot] = float(found_count(word & 0xffffu));
-        if ((HERE.views & VK_VIEW_DENSITY) != 0u && q.w > 0.0) {
-            EXACT float density = float(HERE.draws) / inverse_;
-            HERE.view_density.at[p.slot] = density;
-        }
+        if ((HERE.views & VK_VIEW_DENSITY) != 0u && q.w > 0.0)
+            HERE.view_density.at[p.slot] = expected_draws(HERE.draws, inverse_);
     }
     reservoir_put(HERE.target, p.block, p.lane, q);
     HERE.target_visible.at[p.slot] = 0u;

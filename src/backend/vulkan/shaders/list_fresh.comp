@@ -6,6 +6,7 @@
 #include "pixel.glsl"
 #include "reuse.glsl"
 #include "list_pixel.glsl"
+#include "core/list_mix.h"
 
 void main() {
     if (!in_grid())
@@ -15,7 +16,7 @@ void main() {
     bool fresh = receives(receiver_at(HERE.surfaces, p.block, p.lane));
     if (fresh && (FRAME.flags & FRAME_HISTORY) != 0u) {
         gather(p);
-        fresh = !(neighbour_resv(0).m >= 2.0 * float(FRAME.draws));
+        fresh = list_is_fresh(neighbour_resv(0).m, float(FRAME.draws));
     }
     pixel_store(PIXEL_FRESH, fresh ? 1u : 0u);
 }

@@ -4,15 +4,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "bridge.glsl"
 #include "pixel.glsl"
+#include "core/measured.h"
 #include "list_rays.glsl"
 
 /* A light's first entry, of lists that hold it so many times. */
 float expected(uint id, uint lights, uint weights, uint count, uint copies) {
     for (uint i = 0u; i < count; i++)
-        if (tile_load(lights + i) == id) {
-            EXACT float times = 1.0 / (tile_real(weights + i) * float(copies));
-            return times;
-        }
+        if (tile_load(lights + i) == id)
+            return expected_entries(tile_real(weights + i), copies);
     return -1.0;
 }
 

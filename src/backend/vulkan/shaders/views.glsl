@@ -49,7 +49,7 @@ void note_sky(place p, vec3 c) {
 bool measures(place p) { return (HERE.views & VK_VIEW_LUX) != 0u && HERE.view_lux.at[p.slot] >= 0.0; }
 
 void add_lux(place p, float e) {
-    if (!(e >= 0.0 && e < 1e30))
+    if (!lux_adds(e))
         return;
     EXACT float sum = HERE.view_lux.at[p.slot] + e;
     HERE.view_lux.at[p.slot] = sum;
