@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """rooms.py [COMMIT|FOLDER...]: lines of C a room, without blank lines and comments, a column for each commit or folder
-of sources (without any: this one). Files of src/backend/ are told apart: those that MACHINE names are a machine's own. Of
-the others, functions that core calls by name are bridges: what core asks of any machine, as to load a light, or to sum
-scores up over a work group. The rest is algorithm, which every other machine's backend would have to write again. The
-last lines have the sums; "algorithm and bridges" is what "algorithm" was before bridges were told apart."""
+of sources (without any: this one). Files of src/backend/ are told apart: those that MACHINE names are a machine's own.
+Of the others, functions that core calls by name are bridges: what core asks of any machine, as to load a light, or to
+sum scores up over a work group. The rest is algorithm, which every other machine's backend would have to write again.
+The last lines have the sums; "algorithm and bridges" is what "algorithm" was before bridges were told apart."""
 import os
 import re
 import subprocess

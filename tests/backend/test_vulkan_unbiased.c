@@ -83,6 +83,7 @@ static void lists_on_both_machines(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(pairwise_with_rays), cmocka_unit_test(lists_on_both_machines) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(pairwise_with_rays),
+                                        cmocka_unit_test(lists_on_both_machines) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
