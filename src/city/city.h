@@ -182,9 +182,19 @@ void city_ground_free(city_ground *g);                                    /* one
  * another one) far from all that stands around them have no height: they are laid on the terrain, or at the feet of the
  * buildings. zero: where height 0 of their file is. tell is asked of each: its name or NULL, its height, and how much
  * that is above what stands around it, m. */
-typedef void (*city_level_fn)(void *user, const char *name, double z, double off);
+typedef void (*city_level_fn)(void *user, size_t number, const char *name, double z, double off);
 noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, double zero, city_level_fn tell,
                                    void *user);
+
+/* Meshes of a building that was made of its outline, which follow each other. */
+typedef struct city_outline {
+    uint32_t first, end;
+    size_t input; /* for the caller */
+} city_outline;
+/* The same for buildings, which move as a whole: their feet to the lowest ground that what else stands there tells.
+ * number: of the outline. */
+noc_status city_lay_outlines(noc_scene *scene, const city_outline *outlines, size_t count, double zero,
+                             city_level_fn tell, void *user);
 
 /* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
 bool city_wall_foot(const float *a, const float *b, const float *c);

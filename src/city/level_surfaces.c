@@ -1,6 +1,6 @@
-/* Surfaces that lie level at a height that is none: outlines of roads, lawns and water of a model whose coordinates
- * have 0 where a height would be, beside buildings that stand at 40 m. They are told by what stands around them, and
- * laid on it. */
+/* What lies at a height that is none: surfaces of roads, lawns and water, and buildings made of outlines, of a model
+ * whose coordinates have 0 where a height would be, beside buildings that stand at 40 m. They are told by what stands
+ * around them, and laid on it. */
 #include "city/city.h"
 #include "scene/scene.h"
 
@@ -9,14 +9,17 @@
 #define LEVEL 0.01 /* m between the highest and the lowest corner, and between surfaces at one height */
 #define OFF 3.0    /* m that a surface is believed beside a building */
 #define STEEP 0.2  /* and more, for each metre to where the city tells its height */
+#define NEAR 50.0  /* m to where it does, for a height within that to count as the same */
 #define MANY 10    /* surfaces at one height that is not 0 */
 #define NEARLY_ALL 0.9
 #define LIFT 0.02 /* m over the ground, which is laid under them */
 
-/* A mesh that is level. */
+/* Meshes that are level, or stand on a level foot. */
 typedef struct level {
-    uint32_t mesh;
+    uint32_t first, end;
     double z;
+    bool block;    /* moves as a whole */
+    size_t number; /* of an outline */
 } level;
 
 typedef struct levels {
@@ -48,7 +51,7 @@ static bool find_levels(levels *l, size_t first, size_t end) {
             lo = NOC_MIN(lo, (double)vertex(s, v)[2]);
             hi = NOC_MAX(hi, (double)vertex(s, v)[2]);
         }
-        if (hi - lo <= LEVEL && !array_push(&l->all, (level){ (uint32_t)m, lo }))
+        if (hi - lo <= LEVEL && !array_push(&l->all, (level){ .first = (uint32_t)m, .end = (uint32_t)m + 1, .z = lo }))
             return false;
     }
     return true;
@@ -56,7 +59,7 @@ static bool find_levels(levels *l, size_t first, size_t end) {
 
 static int by_height(const void *a, const void *b) {
     const level *x = a, *y = b;
-    return x->z != y->z ? (x->z > y->z) - (x->z < y->z) : (x->mesh > y->mesh) - (x->mesh < y->mesh);
+    return x->z != y->z ? (x->z > y->z) - (x->z < y->z) : (x->first > y->first) - (x->first < y->first);
 }
 
 /* Height of what stands around a place: terrain, else the feet of buildings. */
@@ -70,38 +73,66 @@ static bool told(const levels *l, double x, double y, double *z, double *distanc
     return isfinite(*distance) && isfinite(*z);
 }
 
-/* Do surfaces first to end, at one height, lie where nothing around them does? Water alone does not tell: lakes lie
+/* What the vertices of levels say of their height. */
+typedef struct evidence {
+    size_t asked, against;
+    double sum; /* of those against, m above their surroundings */
+} evidence;
+
+/* A vertex that is far from what tells a height, and off it, says nothing. */
+static void weigh(const levels *l, const float *p, evidence *e) {
+    double z, distance;
+    if (!told(l, p[0], p[1], &z, &distance))
+        return;
+    double off = p[2] - z, slack = OFF + STEEP * distance;
+    bool against = fabs(off) > slack;
+    e->asked += against || fabs(off) <= OFF || distance <= NEAR;
+    e->against += against;
+    e->sum += against ? off : 0;
+}
+
+/* Do levels first to end, at one height, lie where nothing around them does? Water alone does not tell: lakes lie
  * level, and below their shores. */
 static bool is_none(const levels *l, size_t first, size_t end, double *off) {
     const noc_scene *s = l->scene;
-    size_t asked = 0, against = 0;
-    double sum = 0;
+    evidence e = { 0 };
     for (size_t i = first; i < end; i++) {
-        size_t m = l->all.data[i].mesh, begin = s->meshes.data[m].first_vertex, stop = noc_mesh_end_vertex(s, m);
-        size_t step = (stop - begin) / 64 + 1;
-        for (size_t v = begin; v < stop && class_of(s, m) != NOC_CLASS_WATER; v += step) {
-            double z, distance;
-            const float *p = vertex(s, v);
-            if (!told(l, p[0], p[1], &z, &distance))
-                continue;
-            asked++;
-            if (!(fabs(p[2] - z) > OFF + STEEP * distance))
-                continue;
-            against++;
-            sum += p[2] - z;
-        }
+        const level *v = &l->all.data[i];
+        size_t begin = s->meshes.data[v->first].first_vertex, stop = noc_mesh_end_vertex(s, v->end - 1);
+        size_t step = v->block ? 1 : (stop - begin) / 64 + 1;
+        for (size_t k = begin; k < stop && class_of(s, v->first) != NOC_CLASS_WATER; k += step)
+            if (!v->block || vertex(s, k)[2] - v->z <= LEVEL)
+                weigh(l, vertex(s, k), &e);
     }
-    *off = against ? sum / (double)against : 0;
-    return against && (double)against >= NEARLY_ALL * (double)asked && fabs(*off) > OFF;
+    *off = e.against ? e.sum / (double)e.against : 0;
+    return e.against && (double)e.against >= NEARLY_ALL * (double)e.asked && fabs(*off) > OFF;
+}
+
+/* A block moves to the lowest ground under its foot. off: what its kind is above its surroundings, where nothing tells.
+ */
+static void lay_block(const levels *l, const level *v, double off) {
+    noc_scene *s = l->scene;
+    size_t begin = s->meshes.data[v->first].first_vertex, stop = noc_mesh_end_vertex(s, v->end - 1);
+    double lowest = INFINITY, z, distance;
+    for (size_t k = begin; k < stop; k++)
+        if (vertex(s, k)[2] - v->z <= LEVEL && told(l, vertex(s, k)[0], vertex(s, k)[1], &z, &distance))
+            lowest = NOC_MIN(lowest, z);
+    float rise = (float)(isfinite(lowest) ? lowest - v->z : -off);
+    for (size_t k = begin; k < stop; k++)
+        s->positions.data[3 * k + 2] += rise;
 }
 
 /* off: what they are above their surroundings; a corner around which nothing tells a height moves by as much. */
 static void lay(const levels *l, size_t first, size_t end, double off) {
     noc_scene *s = l->scene;
     for (size_t i = first; i < end; i++) {
-        size_t m = l->all.data[i].mesh;
-        for (size_t v = s->meshes.data[m].first_vertex; v < noc_mesh_end_vertex(s, m); v++) {
-            float *p = s->positions.data + 3 * v;
+        const level *v = &l->all.data[i];
+        if (v->block) {
+            lay_block(l, v, off);
+            continue;
+        }
+        for (size_t k = s->meshes.data[v->first].first_vertex; k < noc_mesh_end_vertex(s, v->first); k++) {
+            float *p = s->positions.data + 3 * k;
             double z, distance;
             bool known = told(l, p[0], p[1], &z, &distance);
             p[2] = (float)((known ? z : p[2] - off) + LIFT);
@@ -133,7 +164,7 @@ static noc_status lay_levels(levels *l, double zero, city_level_fn tell, void *u
         lay(l, first, end, off);
         moved = true;
         for (size_t i = first; i < end; i++)
-            tell(user, l->scene->meshes.data[l->all.data[i].mesh].name, z - zero, off);
+            tell(user, l->all.data[i].number, l->scene->meshes.data[l->all.data[i].first].name, z - zero, off);
     }
     if (!moved)
         return NOC_OK;
@@ -143,20 +174,55 @@ static noc_status lay_levels(levels *l, double zero, city_level_fn tell, void *u
     return NOC_OK;
 }
 
-noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, double zero, city_level_fn tell,
-                                   void *user) {
-    levels l = { .scene = scene };
+/* Lays what was found, or not, by what else stands there. */
+static noc_status judge(levels *l, bool found, double zero, city_level_fn tell, void *user) {
+    noc_scene *scene = l->scene;
     noc_status status = NOC_OK;
-    if (!find_levels(&l, first, end)) {
+    if (!found) {
         noc_scene_out_of_memory(scene);
         status = NOC_ERR_MEMORY;
-    } else if (l.all.len) {
+    } else if (l->all.len) {
         city_ground *around = city_ground_of_buildings(scene);
-        l.around = around;
-        status = scene->no_memory ? NOC_ERR_MEMORY : lay_levels(&l, zero, tell, user);
+        l->around = around;
+        status = scene->no_memory ? NOC_ERR_MEMORY : lay_levels(l, zero, tell, user);
         if (around)
             city_ground_free(around);
     }
-    array_free(&l.all);
+    array_free(&l->all);
+    return status;
+}
+
+noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, double zero, city_level_fn tell,
+                                   void *user) {
+    levels l = { .scene = scene };
+    return judge(&l, find_levels(&l, first, end), zero, tell, user);
+}
+
+/* ---- buildings made of outlines ---- */
+
+static void set_aloft(noc_scene *scene, const city_outline *outlines, size_t count, bool aloft) {
+    for (size_t i = 0; i < count; i++)
+        for (size_t m = outlines[i].first; m < outlines[i].end; m++)
+            scene->meshes.data[m].aloft = aloft;
+}
+
+static bool find_outlines(levels *l, const city_outline *outlines, size_t count) {
+    const noc_scene *s = l->scene;
+    for (size_t i = 0; i < count; i++) {
+        level v = { .first = outlines[i].first, .end = outlines[i].end, .z = INFINITY, .block = true, .number = i };
+        for (size_t k = s->meshes.data[v.first].first_vertex; k < noc_mesh_end_vertex(s, v.end - 1); k++)
+            v.z = NOC_MIN(v.z, (double)vertex(s, k)[2]);
+        if (isfinite(v.z) && !array_push(&l->all, v))
+            return false;
+    }
+    return true;
+}
+
+noc_status city_lay_outlines(noc_scene *scene, const city_outline *outlines, size_t count, double zero,
+                             city_level_fn tell, void *user) {
+    levels l = { .scene = scene };
+    set_aloft(scene, outlines, count, true); /* they tell nothing of the ground until they lie on it */
+    noc_status status = judge(&l, find_outlines(&l, outlines, count), zero, tell, user);
+    set_aloft(scene, outlines, count, false);
     return status;
 }

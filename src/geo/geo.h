@@ -76,6 +76,7 @@ typedef struct geo_object {
     int lod;        /* taken, -1 if not applicable */
     noc_building_use use;
     double storeys; /* of a building, above the ground; 0: not told */
+    bool outline;   /* of a building: made of its outline, whose height above the sea may be none */
 } geo_object;
 
 /* Rings without the repeated last point. Coordinates in the file's CRS, easting northing height order. */
@@ -328,6 +329,13 @@ typedef struct geo_sink {
     bool given_degrees;     /* or geographic */
     bool inspect;           /* a file of no use is told about, and no error */
 } geo_sink;
+
+/* ---- heights (height.c) ---- */
+
+/* Returns true if a file's height is a number that stands for none, such as -9999. */
+bool geo_height_stands_for_none(double z);
+/* The same, or no place on Earth is so high or low, in metres or in feet. */
+bool geo_height_is_none(double z);
 
 /* ---- points by place (cells.c) ---- */
 

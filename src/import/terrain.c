@@ -126,7 +126,6 @@ static noc_status look(terrain *t) {
 /* ---- heights ---- */
 
 /* What stands for none where the file does not say so. */
-static bool stands_for_none(float z) { return z == -9999 || z == -32768 || z == -32767 || z == -99999; }
 
 static void clean(terrain *t) {
     int given;
@@ -136,7 +135,7 @@ static void clean(terrain *t) {
         float *z = &t->grid.z[i];
         double metres = (double)*z * t->scale + t->base;
         bool missing = given && ((double)*z == none || *z == (float)none || (isnan(none) && isnan(*z)));
-        bool taken = !given && stands_for_none(*z);
+        bool taken = !given && geo_height_stands_for_none((double)*z);
         bool is_wild = !missing && !taken && !(metres >= LOWEST && metres <= HIGHEST);
         guessed += taken;
         wild += is_wild;

@@ -43,6 +43,19 @@ static void flat(model *m, const char *id, const char *type, double x, double y,
     object(m, id, type, text);
 }
 
+/* An outline of 10 m by 10 m, of a building that is so high. */
+static void outline(model *m, const char *id, double x, double y, double z, double high) {
+    size_t n = strlen(m->objects);
+    int a = vertex(m, x, y, z);
+    vertex(m, x + 10, y, z);
+    vertex(m, x + 10, y + 10, z);
+    vertex(m, x, y + 10, z);
+    snprintf(m->objects + n, sizeof(m->objects) - n,
+             "%s\"%s\":{\"type\":\"Building\",\"attributes\":{\"measuredHeight\":%g},\"geometry\":[{\"type\":"
+             "\"MultiSurface\",\"lod\":\"0\",\"boundaries\":[[[%d,%d,%d,%d]]]}]}",
+             n ? "," : "", id, high, a, a + 1, a + 2, a + 3);
+}
+
 /* A block of 10 m by 10 m. */
 static void block(model *m, double x, double y, double foot, double top) {
     char text[300], id[20];
@@ -69,7 +82,8 @@ static model street(double foot, double climb) {
     return m;
 }
 
-static noc_scene *load(const model *m, const char *crs, bool strict, noc_status expected) {
+/* lamps: a table; NULL: none */
+static noc_scene *load_with(const model *m, const char *lamps, const char *crs, bool strict, noc_status expected) {
     static char text[25000];
     snprintf(text, sizeof(text),
              "{\"type\":\"CityJSON\",\"version\":\"2.0\",%s\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},"
@@ -80,10 +94,16 @@ static noc_scene *load(const model *m, const char *crs, bool strict, noc_status 
     p.windows = NOC_SWITCH_OFF;
     p.infer_lamps = NOC_SWITCH_OFF;
     p.strict = strict;
-    const char *paths[] = { write_file("model.city.json", text) };
+    p.crs = lamps ? "EPSG:25832" : NULL;
+    const char *paths[] = { write_file("model.city.json", text), lamps ? write_file("lamps.csv", lamps) : NULL };
     told[0] = 0;
-    assert_int_equal(noc_scene_load(s, paths, 1, &p, NULL), expected);
+    if (noc_scene_load(s, paths, lamps ? 2 : 1, &p, NULL) != expected)
+        fail_msg("%s", told);
     return s;
+}
+
+static noc_scene *load(const model *m, const char *crs, bool strict, noc_status expected) {
+    return load_with(m, NULL, crs, strict, expected);
 }
 
 /* Lowest and highest corner of the object's surfaces. */
@@ -177,7 +197,108 @@ static void another_height(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Buildings of which there are outlines alone. */
+static void outlines_put_on_the_ground(void **state) {
+    (void)state;
+    static const double none[] = { 0, -9999, -32768, 1e6 };
+    for (size_t i = 0; i < NOC_COUNT(none); i++) {
+        model m = street(40, 0);
+        outline(&m, "house", 100, 0, none[i], 10);
+        outline(&m, "hall", 100, 22, none[i], 25);
+        outline(&m, "flat one", 120, 0, none[i], 0);
+        noc_scene *s = load(&m, "", false, NOC_OK);
+        expect_height(s, "house", 40, 50, 0.05);
+        expect_height(s, "hall", 40, 65, 0.05);
+        expect_height(s, "flat one", 40, 40, 0.05);
+        assert_non_null(strstr(told, "3 outlines of buildings, such as \"house\", level at 0.00 m, 40 m below"));
+        assert_true(s->bounds_min[2] + s->origin[2] > 39);
+        noc_scene_destroy(s);
+        s = load(&m, "", true, NOC_ERR_FORMAT);
+        assert_non_null(strstr(told, "outline of a building at a height that is none, put on the ground"));
+        noc_scene_destroy(s);
+    }
+    model m = { .vertex_count = 0 };
+    flat(&m, "terrain", "TINRelief", -50, -50, 38.5, 200, 150);
+    outline(&m, "house", 0, 0, 0, 10);
+    noc_scene *s = load(&m, "", false, NOC_OK);
+    expect_height(s, "house", 38.5, 48.5, 0.01);
+    noc_scene_destroy(s);
+    model hill = street(100, 8); /* 80 m to the top */
+    outline(&hill, "low", -20, 0, 0, 10);
+    outline(&hill, "high", 100, 0, 0, 10);
+    s = load(&hill, UTM, false, NOC_OK);
+    expect_height(s, "low", 100, 110, 0.7);
+    expect_height(s, "high", 107.5, 117.5, 0.7);
+    noc_scene_destroy(s);
+}
+
+/* Heights such as -9999: of flat surfaces they are missing, other ones are left out. */
+static void numbers_that_stand_for_none(void **state) {
+    (void)state;
+    model m = street(40, 0);
+    flat(&m, "road", "Road", -5, 12, -9999, 100, 8);
+    flat(&m, "pond", "WaterBody", 32, 0, 1e6, 6, 10);
+    block(&m, 100, 0, -9999, 52);
+    noc_scene *s = load(&m, "", false, NOC_OK);
+    expect_height(s, "road", 40, 40, 0.05);
+    expect_height(s, "pond", 40, 40, 0.05);
+    assert_true(s->bounds_min[2] + s->origin[2] > 39);
+    noc_scene_destroy(s);
+    s = load(&m, "", true, NOC_ERR_FORMAT);
+    assert_non_null(strstr(told, "surface at a height such as -9999, taken as missing (road at -9999, pond at 1e+06)"));
+    assert_non_null(strstr(told, "4 x surface with corners at heights such as -9999 (block 10 at -9999)"));
+    noc_scene_destroy(s);
+}
+
+/* Of lamps, too, with a city and alone. */
+static void elevations_that_are_none(void **state) {
+    (void)state;
+    model m = { .vertex_count = 0 };
+    for (int i = 0; i < 8; i++)
+        block(&m, 690000 + 20 * (i / 2), 5330000 + 22 * (i % 2), 40, 52);
+    static const char text[] = "id,x,y,ele,lamp_height\na,690015,5330016,40,8\nb,690035,5330016,-9999,8\n"
+                               "c,690055,5330016,1e6,8\nd,690075,5330016,-32768,8\n";
+    noc_scene *s = load_with(&m, text, UTM, false, NOC_OK);
+    assert_int_equal(s->lights.len, 4);
+    for (size_t i = 0; i < 4; i++)
+        if (fabs(s->lights.data[i].p[2] + s->origin[2] - 47.98) > 0.05)
+            fail_msg("a lamp hangs at %g m", s->lights.data[i].p[2] + s->origin[2]);
+    noc_scene_destroy(s);
+    s = noc_scene_create(log_);
+    noc_import_params p = noc_import_default_params();
+    p.crs = "EPSG:25832";
+    const char *path = in_folder("lamps.csv");
+    noc_report *report;
+    assert_int_equal(noc_scene_load(s, &path, 1, &p, &report), NOC_OK);
+    for (size_t i = 0; i < 4; i++)
+        assert_true(fabs(s->lights.data[i].p[2] + s->origin[2] - 47.98) < 0.05);
+    const noc_report_line *line = noc_report_get_file(report, 0)->lines;
+    assert_string_equal(line->reason, "elevation of a lamp such as -9999, taken as missing");
+    assert_string_equal(line->examples, "b at -9999, c at 1e+06, d at -32768");
+    noc_report_destroy(report);
+    noc_scene_destroy(s);
+}
+
 /* ---- heights that are some ---- */
+
+static void outlines_left_where_they_lie(void **state) {
+    (void)state;
+    model sea = street(1.5, 0), own = street(40, 0), far = street(40, 0), alone = { .vertex_count = 0 };
+    outline(&sea, "house", 100, 0, 0, 10);
+    outline(&own, "house", 100, 0, 39, 10);
+    outline(&far, "house", 800, 0, 0, 10);
+    outline(&alone, "house", 100, 0, 0, 10);
+    const struct {
+        const model *m;
+        double z;
+    } rows[] = { { &sea, 0 }, { &own, 39 }, { &far, 0 }, { &alone, 0 } };
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        noc_scene *s = load(rows[i].m, "", false, NOC_OK);
+        expect_height(s, "house", rows[i].z, rows[i].z + 10, 1e-3);
+        assert_null(strstr(told, "level at"));
+        noc_scene_destroy(s);
+    }
+}
 
 static void left_where_it_lies(void **state) {
     (void)state;
@@ -260,10 +381,18 @@ static void blocks_in_the_air(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(laid_at_the_feet),  cmocka_unit_test(laid_along_a_slope),
-        cmocka_unit_test(laid_on_terrain),   cmocka_unit_test(laid_beyond_terrain),
-        cmocka_unit_test(another_height),    cmocka_unit_test(left_where_it_lies),
-        cmocka_unit_test(lamps_of_a_report), cmocka_unit_test(blocks_in_the_air),
+        cmocka_unit_test(laid_at_the_feet),
+        cmocka_unit_test(laid_along_a_slope),
+        cmocka_unit_test(laid_on_terrain),
+        cmocka_unit_test(laid_beyond_terrain),
+        cmocka_unit_test(another_height),
+        cmocka_unit_test(left_where_it_lies),
+        cmocka_unit_test(outlines_put_on_the_ground),
+        cmocka_unit_test(numbers_that_stand_for_none),
+        cmocka_unit_test(outlines_left_where_they_lie),
+        cmocka_unit_test(elevations_that_are_none),
+        cmocka_unit_test(lamps_of_a_report),
+        cmocka_unit_test(blocks_in_the_air),
     };
     assert_non_null(mkdtemp(folder));
     log_ = noc_log_create(&(noc_log_params){ .message = keep, .level = NOC_LOG_WARN });

@@ -50,6 +50,11 @@ static void emit_block(cg_parser *p, const cg_polygon *polygon, const cg_geometr
     double z = INFINITY, degree = p->lat_first || (p->out.len && fabs(p->out.data[0]) <= 180) ? 1e-8 : 1e-3;
     for (size_t i = 2; i < p->out.len; i += 3)
         z = fmin(z, p->out.data[i]);
+    if (geo_height_is_none(z)) {
+        geo_issue(p->sink->issues, GEO_GUESSED, "outline of a building at a height such as -9999, taken as missing",
+                  cg_report_id(p, polygon->id, g->feature));
+        z = 0;
+    }
     /* an edge of a roof at 0 lies there for want of a height */
     double low = g->role == CG_ROLE_ROOF_EDGE && z != 0 ? z - height : z;
     const geo_block block = { p->out_rings.len, p->out_rings.data, p->out.data, low, low + height,

@@ -155,9 +155,12 @@ void cg_emit_begin(cg_parser *p) {
     int lod = feature->type->kind == GEO_TERRAIN ? -1 : p->selection.lod;
     if (p->status || p->object_open)
         return;
-    geo_object object = {
-        .kind = feature->type->kind, .id = feature->id, .lod = lod, .use = p->object.use, .storeys = p->object.storeys
-    };
+    geo_object object = { .kind = feature->type->kind,
+                          .id = feature->id,
+                          .lod = lod,
+                          .use = p->object.use,
+                          .storeys = p->object.storeys,
+                          .outline = lod == 0 && feature->type->kind == GEO_BUILDING };
     p->object_open = true;
     cg_stop(p, p->sink->begin_object(p->sink->ctx, &object));
 }

@@ -59,37 +59,64 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
         im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
 }
 
+/* What was laid of a file. */
 typedef struct leveling {
-    importer *im;
-    input *in;
     size_t count;
     double z, off;
     const char *example;
 } leveling;
 
-static void tell_level(void *user, const char *name, double z, double off) {
-    leveling *l = user;
-    geo_issue(l->in->issues, GEO_GUESSED, "surface at a height that is none, laid on what is around it",
-              name ? name : "");
-    l->example = l->count++ ? l->example : name;
-    l->z = z;
-    l->off = off;
+typedef struct levelings {
+    importer *im;
+    leveling *of; /* of each input */
+    size_t now;   /* input of the surfaces that are asked */
+} levelings;
+
+static void tell_one(levelings *l, size_t index, const char *reason, const char *name, double z, double off) {
+    leveling *of = &l->of[index];
+    geo_issue(l->im->inputs[index].issues, GEO_GUESSED, reason, name ? name : "");
+    of->example = of->count++ ? of->example : name;
+    of->z = z;
+    of->off = off;
+}
+
+static void tell_surface(void *user, size_t number, const char *name, double z, double off) {
+    levelings *l = user;
+    (void)number;
+    tell_one(l, l->now, "surface at a height that is none, laid on what is around it", name, z, off);
+}
+
+static void tell_outline(void *user, size_t number, const char *name, double z, double off) {
+    levelings *l = user;
+    tell_one(l, l->im->outlines.data[number].input, "outline of a building at a height that is none, put on the ground",
+             name, z, off);
+}
+
+static void warn_of_levels(const importer *im, const leveling *of, const char *one, const char *many) {
+    for (size_t i = 0; i < im->input_count; i++)
+        if (of[i].count)
+            noc_warn(im->log,
+                     "%s: %zu %s, such as \"%.60s\", level at %.2f m, %.0f m %s what stands around: without a height, "
+                     "it seems, and laid on the ground",
+                     im->inputs[i].path, of[i].count, of[i].count == 1 ? one : many, of[i].example ? of[i].example : "",
+                     of[i].z, fabs(of[i].off), of[i].off < 0 ? "below" : "above");
 }
 
 noc_status heights_of_surfaces(importer *im) {
-    noc_status status = NOC_OK;
-    for (size_t i = 0; i < im->input_count && !status; i++) {
-        leveling l = { im, &im->inputs[i] };
-        if (!l.in->started || !l.in->reader || l.in->reader->reads != NOC_READS_CITY)
-            continue;
-        status = city_lay_level_surfaces(im->scene, l.in->first_mesh, l.in->end_mesh, -im->origin[2], tell_level, &l);
-        if (l.count)
-            noc_warn(im->log,
-                     "%s: %zu surface%s of roads, lawns or water, such as \"%.60s\", level at %.2f m, %.0f m %s what "
-                     "stands around: without a height, it seems, and laid on the ground",
-                     l.in->path, l.count, l.count == 1 ? "" : "s", l.example ? l.example : "", l.z, fabs(l.off),
-                     l.off < 0 ? "below" : "above");
+    levelings l = { .im = im, .of = noc_calloc(im->input_count + 1, sizeof(*l.of)) };
+    if (!l.of)
+        return noc_no_memory(im->log, "import");
+    noc_status status =
+        city_lay_outlines(im->scene, im->outlines.data, im->outlines.len, -im->origin[2], tell_outline, &l);
+    warn_of_levels(im, l.of, "outline of a building", "outlines of buildings");
+    memset(l.of, 0, im->input_count * sizeof(*l.of));
+    for (; l.now < im->input_count && !status; l.now++) {
+        const input *in = &im->inputs[l.now];
+        if (in->started && in->reader && in->reader->reads == NOC_READS_CITY)
+            status = city_lay_level_surfaces(im->scene, in->first_mesh, in->end_mesh, -im->origin[2], tell_surface, &l);
     }
+    warn_of_levels(im, l.of, "surface of roads, lawns or water", "surfaces of roads, lawns or water");
+    free(l.of);
     return status;
 }
 

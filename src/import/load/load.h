@@ -6,6 +6,7 @@
 #ifndef NOC_IMPORT_LOAD_H
 #define NOC_IMPORT_LOAD_H
 
+#include "city/city.h"
 #include "import/import.h"
 #include "scene/scene.h"
 
@@ -132,6 +133,7 @@ typedef struct object_now {
     size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
     noc_building_use use;
     double storeys;
+    bool outline;
 } object_now;
 
 typedef struct object_record {
@@ -205,6 +207,7 @@ typedef struct importer {
     size_t image_bytes;                  /* of those that lie in inputs */
     _Atomic size_t images_kept;          /* bytes of others */
     NOC_ARRAY(taken_building) buildings; /* where windows are asked for */
+    NOC_ARRAY(city_outline) outlines;    /* buildings that were made of their outlines */
     size_t object_mesh;                  /* first mesh of the object that is being taken */
     bool has_roads;
     size_t first_mesh; /* of those that inputs are read into: what was there before, and built-in scenes, is whole */

@@ -100,6 +100,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     r->now.kind = object->kind;
     r->now.use = object->use;
     r->now.storeys = object->storeys;
+    r->now.outline = object->outline;
     r->object_lod = object->lod;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
@@ -118,17 +119,45 @@ static noc_status on_end_object(void *ctx) {
     return status;
 }
 
-/* Corners of all rings to r->scratch, in local metres. *usable is false if they cannot be transformed. */
-static noc_status place_rings(reading *r, const double *xyz, const size_t *ring_size, size_t ring_count, const char *id,
-                              size_t *count, bool *usable) {
+/* Corners of all rings to r->scratch, as the file has them. */
+static noc_status copy_rings(reading *r, const double *xyz, const size_t *ring_size, size_t ring_count, size_t *count) {
     *count = 0;
     for (size_t i = 0; i < ring_count; i++)
         *count += ring_size[i];
     size_t numbers = 3 * *count;
     r->scratch.len = 0;
-    if (!array_append(&r->scratch, xyz, numbers))
+    return array_append(&r->scratch, xyz, numbers) ? NOC_OK : noc_no_memory(r->log, r->in->path);
+}
+
+/* Counts a height that is none, with its value. */
+static noc_status tell_height(reading *r, geo_issue_kind kind, const char *reason, const char *id, double z) {
+    char *told = noc_format("%s at %.6g", id ? id : "", z);
+    if (!told)
         return noc_no_memory(r->log, r->in->path);
-    return place_points(r, r->scratch.data, *count, id, usable);
+    geo_issue(r->in->issues, kind, reason, told);
+    free(told);
+    return NOC_OK;
+}
+
+/* Corners at -9999 and the like. All of a flat surface lie at 0 then, and are laid on the ground once it is known
+ * (heights_of_surfaces); of anything else nothing is known. *usable: it is not left out. */
+static noc_status check_heights(reading *r, const geo_polygon *polygon, size_t count, bool *usable) {
+    noc_class cls = polygon->cls;
+    bool flat = cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK || cls == NOC_CLASS_GREEN ||
+                cls == NOC_CLASS_WATER || (cls == NOC_CLASS_GROUND && r->now.kind != GEO_BUILDING) || r->now.outline;
+    double *xyz = r->scratch.data, z = 0;
+    size_t none = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(xyz[3 * i + 2]) && geo_height_is_none(xyz[3 * i + 2])) {
+            z = xyz[3 * i + 2];
+            xyz[3 * i + 2] = 0;
+            none++;
+        }
+    *usable = !none || (none == count && flat);
+    if (!none)
+        return NOC_OK;
+    return *usable ? tell_height(r, GEO_GUESSED, "surface at a height such as -9999, taken as missing", polygon->id, z)
+                   : tell_height(r, GEO_SKIPPED, "surface with corners at heights such as -9999", polygon->id, z);
 }
 
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
@@ -137,8 +166,11 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     noc_class cls = (unsigned)polygon->cls < NOC_CLASS_COUNT ? polygon->cls : NOC_CLASS_OTHER;
     size_t count;
     bool usable;
-    noc_status status =
-        place_rings(r, polygon->xyz, polygon->ring_size, polygon->ring_count, polygon->id, &count, &usable);
+    noc_status status = copy_rings(r, polygon->xyz, polygon->ring_size, polygon->ring_count, &count);
+    if (!status)
+        status = check_heights(r, polygon, count, &usable);
+    if (!status && usable)
+        status = place_points(r, r->scratch.data, count, polygon->id, &usable);
     if (status || !usable)
         return status;
     if (r->object_id && !r->now.given)
@@ -193,7 +225,13 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     size_t heads = (size_t)NOC_CLAMP(lamp->body_heads, 0, GEO_BODY_HEADS);
     memcpy(points[0], lamp->xyz, sizeof(points[0]));
     memcpy(points[1], lamp->head, heads * sizeof(points[0]));
-    noc_status status = place_points(r, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
+    noc_status status = NOC_OK;
+    if (isfinite(lamp->xyz[2]) && geo_height_is_none(lamp->xyz[2])) {
+        points[0][2] = NAN;
+        status =
+            tell_height(r, GEO_GUESSED, "elevation of a lamp such as -9999, taken as missing", lamp->id, lamp->xyz[2]);
+    }
+    status = status ? status : place_points(r, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
     p.given = (given_place){ { NAN, NAN }, r->source };
     if (!status && r->given.len >= 2)
         memcpy(p.given.xy, r->given.data, sizeof(p.given.xy));
@@ -230,8 +268,9 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     reading *r = ctx;
     size_t count;
     bool usable, inside = true;
-    noc_status status =
-        place_rings(r, footprint->xyz, footprint->ring_size, footprint->ring_count, footprint->id, &count, &usable);
+    noc_status status = copy_rings(r, footprint->xyz, footprint->ring_size, footprint->ring_count, &count);
+    if (!status)
+        status = place_points(r, r->scratch.data, count, footprint->id, &usable);
     if (!status && usable)
         status = box_point(r, r->scratch.data, &inside);
     if (!status && !inside)

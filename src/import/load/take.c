@@ -149,6 +149,10 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
         !array_push(&im->buildings, (taken_building){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
                                                       (size_t)(in - im->inputs), now->use }))
         return noc_no_memory(im->log, in->path);
+    if (now->outline && im->object_mesh < im->scene->meshes.len &&
+        !array_push(&im->outlines, (city_outline){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
+                                                   (size_t)(in - im->inputs) }))
+        return noc_no_memory(im->log, in->path);
     in->object_decided = in->object_repeated = false;
     return NOC_OK;
 }
@@ -234,6 +238,7 @@ void take_destroy(importer *im) {
     array_free(&im->storeys);
     array_free(&im->lost);
     array_free(&im->buildings);
+    array_free(&im->outlines);
     map_free(&im->looks);
     map_free(&im->image_numbers);
     look_images_free(im);
