@@ -1,6 +1,7 @@
 /* Readings: closed forms of meters, rasters that are the same however they are cut, and their files. */
 static char folder[] = "/tmp/nocturne-measureXXXXXX";
 #include "../folder.h"
+#include "../memory.h"
 #include "../render/rooms.h"
 #include "../told.h"
 
@@ -221,6 +222,37 @@ static void it_can_be_stopped(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Each allocation, once: no raster and one error, or the same raster. */
+static void memory_is_refused(void **state) {
+    (void)state;
+    noc_log *log = counting_log();
+    noc_scene *s = lit_floor(false, log);
+    noc_view *v = own_view(s, 1, log);
+    noc_raster_params p = noc_raster_default_params();
+    memcpy(p.extent, (const double[]){ 0, 0, 4, 4 }, sizeof(p.extent));
+    noc_raster *good = noc_measure_raster(v, &p, NULL, NULL, NULL);
+    assert_non_null(good);
+    uint64_t refused = 0;
+    for (uint64_t n = 1;; n++) {
+        begin_refusal(n, false);
+        noc_raster *r = noc_measure_raster(v, &p, NULL, NULL, NULL);
+        bool reached = end_refusal();
+        refused += !r;
+        if (r)
+            assert_memory_equal(r->lux, good->lux, 16 * sizeof(float));
+        else
+            assert_int_equal(refusing.errors, 1);
+        noc_raster_destroy(r);
+        if (!reached)
+            break;
+    }
+    assert_true(refused >= 5);
+    noc_raster_destroy(good);
+    close_view(v);
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+}
+
 #if NOC_HAVE_GDAL
 /* What GDAL reads of a file is what was written. */
 static void a_geotiff_has_place_units_and_numbers(void **state) {
@@ -279,6 +311,7 @@ int main(void) {
         cmocka_unit_test(figures_of_readings),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(it_can_be_stopped),
+        cmocka_unit_test(memory_is_refused),
 #if NOC_HAVE_GDAL
         cmocka_unit_test(a_geotiff_has_place_units_and_numbers),
 #endif
