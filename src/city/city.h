@@ -180,9 +180,14 @@ void city_ground_free(city_ground *g);                                    /* one
 
 /* Roads, pavements, lawns and water among the meshes first to end that lie level at height 0 (or, many of them, at
  * another one) far from all that stands around them have no height: they are laid on the terrain, or at the feet of the
- * buildings. zero: where height 0 of their file is. tell is asked of each: its name or NULL, its height, and how much
- * that is above what stands around it, m. */
-typedef void (*city_level_fn)(void *user, size_t number, const char *name, double z, double off);
+ * buildings, and split until they follow that. zero: where height 0 of their file is. tell is called for each. */
+typedef struct city_laid {
+    size_t number;    /* of an outline */
+    const char *name; /* NULL: none */
+    double z, off;    /* its height, and how much that is above what stands around it, m */
+    bool follows;     /* false: its corners alone lie on the ground */
+} city_laid;
+typedef void (*city_level_fn)(void *user, const city_laid *laid);
 noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, double zero, city_level_fn tell,
                                    void *user);
 

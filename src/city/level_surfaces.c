@@ -2,6 +2,7 @@
  * whose coordinates have 0 where a height would be, beside buildings that stand at 40 m. They are told by what stands
  * around them, and laid on it. */
 #include "city/city.h"
+#include "city/drape.h"
 #include "scene/scene.h"
 
 #include <math.h>
@@ -13,6 +14,14 @@
 #define MANY 10    /* surfaces at one height that is not 0 */
 #define NEARLY_ALL 0.9
 #define LIFT 0.02 /* m over the ground, which is laid under them */
+/* m that terrain, and what buildings tell of the ground, may lie off an edge of what is laid; edges
+ * from SHORT on are split, and from LONG on always */
+#define FLAT 0.01
+#define FLAT_BETWEEN 0.25
+#define SHORT 1.0
+#define LONG 40.0
+#define LONG_BETWEEN 200.0
+enum { MOST_TRIANGLES = 1000000 }; /* of what is laid of a file */
 
 /* Meshes that are level, or stand on a level foot. */
 typedef struct level {
@@ -22,10 +31,20 @@ typedef struct level {
     size_t number; /* of an outline */
 } level;
 
+/* Triangles that lie on the ground in place of a level mesh's own. */
+typedef struct draped {
+    uint32_t mesh;
+    size_t first, end; /* triangles of the drape */
+} draped;
+
 typedef struct levels {
     noc_scene *scene;
     const city_ground *around; /* by buildings alone */
     NOC_ARRAY(level) all;
+    drape drape;
+    double off; /* that surfaces which are laid now lie above what is around them */
+    double z;   /* their height */
+    NOC_ARRAY(draped) draped;
 } levels;
 
 static const float *vertex(const noc_scene *s, size_t i) { return s->positions.data + 3 * i; }
@@ -122,22 +141,84 @@ static void lay_block(const levels *l, const level *v, double off) {
         s->positions.data[3 * k + 2] += rise;
 }
 
-/* off: what they are above their surroundings; a corner around which nothing tells a height moves by as much. */
-static void lay(const levels *l, size_t first, size_t end, double off) {
-    noc_scene *s = l->scene;
-    for (size_t i = first; i < end; i++) {
-        const level *v = &l->all.data[i];
-        if (v->block) {
-            lay_block(l, v, off);
-            continue;
-        }
-        for (size_t k = s->meshes.data[v->first].first_vertex; k < noc_mesh_end_vertex(s, v->first); k++) {
-            float *p = s->positions.data + 3 * k;
-            double z, distance;
-            bool known = told(l, p[0], p[1], &z, &distance);
-            p[2] = (float)((known ? z : p[2] - off) + LIFT);
-        }
+/* Where what is laid now comes to lie; where nothing tells it moves with the rest. */
+static double ground_at(void *user, double x, double y) {
+    const levels *l = user;
+    double z, distance;
+    return told(l, x, y, &z, &distance) ? z : l->z - l->off;
+}
+
+/* Splits the surface until it follows the ground. False: it has places in a texture, or is too large for what is left
+ * of the budget. */
+static bool split(levels *l, uint32_t mesh) {
+    const noc_scene *s = l->scene;
+    const noc_scene_mesh *m = &s->meshes.data[mesh];
+    drape *d = &l->drape;
+    size_t corners = d->position.len, indices = d->index.len;
+    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count && !m->uv; t++) {
+        double corner[3][3];
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                corner[i][k] = (double)vertex(s, s->indices.data[3 * t + (size_t)i])[k];
+        if (drape_triangle(d, (const double *const[]){ corner[0], corner[1], corner[2] }, NULL))
+            return false;
     }
+    if (!m->uv && !drape_is_full(d) && d->index.len > indices) {
+        d->no_memory = !array_push(&l->draped, (draped){ mesh, indices / 3, d->index.len / 3 }) || d->no_memory;
+        return true;
+    }
+    d->position.len = corners;
+    d->index.len = indices;
+    d->waiting.len = 0;
+    return false;
+}
+
+/* Returns whether it follows the ground between its corners, too. */
+static bool lay_surface(levels *l, const level *v) {
+    noc_scene *s = l->scene;
+    bool follows = split(l, v->first);
+    for (size_t k = s->meshes.data[v->first].first_vertex; k < noc_mesh_end_vertex(s, v->first); k++) {
+        float *p = s->positions.data + 3 * k;
+        p[2] = (float)(ground_at(l, p[0], p[1]) + LIFT);
+    }
+    return follows;
+}
+
+/* The mesh's own triangles become points, and a mesh of its name and material takes their place. */
+static bool replace(noc_scene *s, const drape *d, const draped *with, uint32_t *local) {
+    const noc_scene_mesh old = s->meshes.data[with->mesh];
+    size_t count = with->end - with->first;
+    for (size_t i = 0; i < 3 * count; i++)
+        local[i] = (uint32_t)i;
+    const noc_mesh mesh = { .vertex_count = 3 * count,
+                            .positions = d->position.data + 9 * with->first,
+                            .triangle_count = count,
+                            .indices = local,
+                            .material = old.material,
+                            .group = old.group,
+                            .name = old.name };
+    if (noc_scene_add_mesh(s, &mesh) < 0)
+        return false;
+    s->meshes.data[s->meshes.len - 1].land = old.land;
+    for (size_t t = old.first_triangle; t < (size_t)old.first_triangle + old.triangle_count; t++)
+        for (size_t i = 1; i < 3; i++)
+            s->indices.data[3 * t + i] = s->indices.data[3 * t];
+    return true;
+}
+
+/* Once all was asked: the scene's ground is made anew for each mesh that is added. */
+static noc_status replace_all(levels *l) {
+    size_t most = 0;
+    bool ok = !l->drape.no_memory;
+    for (size_t i = 0; i < l->draped.len; i++)
+        most = NOC_MAX(most, l->draped.data[i].end - l->draped.data[i].first);
+    uint32_t *local = noc_calloc(3 * most + 1, sizeof(*local));
+    for (size_t i = 0; i < l->draped.len && ok && local; i++)
+        ok = replace(l->scene, &l->drape, &l->draped.data[i], local);
+    free(local);
+    if (!ok || !local)
+        noc_scene_out_of_memory(l->scene);
+    return ok && local ? NOC_OK : NOC_ERR_MEMORY;
 }
 
 static void measure(noc_scene *s) {
@@ -161,17 +242,33 @@ static noc_status lay_levels(levels *l, double zero, city_level_fn tell, void *u
         bool many = end - first >= MANY && 2 * (end - first) >= l->all.len;
         if (!(fabs(z - zero) <= LEVEL || many) || !is_none(l, first, end, &off))
             continue;
-        lay(l, first, end, off);
         moved = true;
-        for (size_t i = first; i < end; i++)
-            tell(user, l->all.data[i].number, l->scene->meshes.data[l->all.data[i].first].name, z - zero, off);
+        l->off = off;
+        for (size_t i = first; i < end; i++) {
+            const level *v = &l->all.data[i];
+            l->z = v->z;
+            bool follows = true;
+            if (v->block)
+                lay_block(l, v, off);
+            else
+                follows = lay_surface(l, v);
+            tell(user, &(city_laid){ v->number, l->scene->meshes.data[v->first].name, z - zero, off, follows });
+        }
     }
-    if (!moved)
-        return NOC_OK;
+    noc_status status = moved ? replace_all(l) : NOC_OK;
+    if (!moved || status)
+        return status;
     measure(l->scene);
     noc_ground_free(l->scene->ground); /* it knows where they were */
     l->scene->ground = NULL;
     return NOC_OK;
+}
+
+static bool has_terrain(const noc_scene *s) {
+    for (size_t m = 0; m < s->meshes.len; m++)
+        if (class_of(s, m) == NOC_CLASS_TERRAIN && s->meshes.data[m].triangle_count)
+            return true;
+    return false;
 }
 
 /* Lays what was found, or not, by what else stands there. */
@@ -184,11 +281,22 @@ static noc_status judge(levels *l, bool found, double zero, city_level_fn tell, 
     } else if (l->all.len) {
         city_ground *around = city_ground_of_buildings(scene);
         l->around = around;
+        bool terrain = has_terrain(scene);
+        l->drape = (drape){ .scene = scene,
+                            .height = ground_at,
+                            .user = l,
+                            .lift = LIFT,
+                            .flat = terrain ? FLAT : FLAT_BETWEEN,
+                            .shortest = SHORT,
+                            .longest = terrain ? LONG : LONG_BETWEEN,
+                            .most = MOST_TRIANGLES };
         status = scene->no_memory ? NOC_ERR_MEMORY : lay_levels(l, zero, tell, user);
         if (around)
             city_ground_free(around);
     }
     array_free(&l->all);
+    array_free(&l->draped);
+    drape_free(&l->drape);
     return status;
 }
 

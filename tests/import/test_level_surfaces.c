@@ -172,6 +172,38 @@ static void laid_on_terrain(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A ridge of terrain 8 m high across a road of two triangles; beyond it a ditch as deep. */
+static double ridge(double x) { return 40 + 8 * exp(-pow((x - 30) / 10, 2)) - 8 * exp(-pow((x - 80) / 10, 2)); }
+
+static void follows_the_terrain(void **state) {
+    (void)state;
+    model m = { .vertex_count = 0 };
+    char boundaries[4000], *end = boundaries;
+    for (int i = 0; i <= 22; i++)
+        for (int side = 0; side < 2; side++)
+            vertex(&m, 5 * i, 40 * side, ridge(5 * i));
+    for (int i = 0; i < 22; i++)
+        end += sprintf(end, "%s[[%d,%d,%d]],[[%d,%d,%d]]", i ? "," : "", 2 * i, 2 * i + 2, 2 * i + 3, 2 * i, 2 * i + 3,
+                       2 * i + 1);
+    object(&m, "terrain", "TINRelief", boundaries);
+    flat(&m, "road", "Road", 2, 15, 0, 106, 10);
+    noc_scene *s = load(&m, "", false, NOC_OK);
+    double above[2] = { INFINITY, -INFINITY }, z, ground;
+    for (int i = 0; i < 2000; i++) {
+        double x = 2.5 + 105 * (i % 200) / 200. - s->origin[0], y = 15.5 + 9 * (i / 200) / 10. - s->origin[1];
+        assert_true(noc_scene_highest(s, 1u << NOC_CLASS_TERRAIN, x, y, &ground));
+        assert_true(noc_scene_highest(s, 1u << NOC_CLASS_ROAD, x, y, &z));
+        above[0] = NOC_MIN(above[0], z - ground);
+        above[1] = NOC_MAX(above[1], z - ground);
+    }
+    if (above[0] < -0.06 || above[1] > 0.1) /* edges of less than a metre stay, on a slope of 0.7 */
+        fail_msg("the road is %g to %g m above the terrain", above[0], above[1]);
+    double lo, hi;
+    heights_of(s, "road", &lo, &hi);
+    assert_true(fabs(hi - 48.02) < 0.15 && fabs(lo - 32.02) < 0.15);
+    noc_scene_destroy(s);
+}
+
 /* Where the terrain ends the road goes on as high. */
 static void laid_beyond_terrain(void **state) {
     (void)state;
@@ -384,6 +416,7 @@ int main(void) {
         cmocka_unit_test(laid_at_the_feet),
         cmocka_unit_test(laid_along_a_slope),
         cmocka_unit_test(laid_on_terrain),
+        cmocka_unit_test(follows_the_terrain),
         cmocka_unit_test(laid_beyond_terrain),
         cmocka_unit_test(another_height),
         cmocka_unit_test(left_where_it_lies),

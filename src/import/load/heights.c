@@ -72,24 +72,26 @@ typedef struct levelings {
     size_t now;   /* input of the surfaces that are asked */
 } levelings;
 
-static void tell_one(levelings *l, size_t index, const char *reason, const char *name, double z, double off) {
+static void tell_one(levelings *l, size_t index, const char *reason, const city_laid *laid) {
     leveling *of = &l->of[index];
-    geo_issue(l->im->inputs[index].issues, GEO_GUESSED, reason, name ? name : "");
-    of->example = of->count++ ? of->example : name;
-    of->z = z;
-    of->off = off;
+    geo_issue(l->im->inputs[index].issues, GEO_GUESSED, reason, laid->name ? laid->name : "");
+    of->example = of->count++ ? of->example : laid->name;
+    of->z = laid->z;
+    of->off = laid->off;
 }
 
-static void tell_surface(void *user, size_t number, const char *name, double z, double off) {
+static void tell_surface(void *user, const city_laid *laid) {
     levelings *l = user;
-    (void)number;
-    tell_one(l, l->now, "surface at a height that is none, laid on what is around it", name, z, off);
+    tell_one(l, l->now, "surface at a height that is none, laid on what is around it", laid);
+    if (!laid->follows)
+        geo_issue(l->im->inputs[l->now].issues, GEO_GUESSED, "surface whose corners alone were laid on the ground",
+                  laid->name ? laid->name : "");
 }
 
-static void tell_outline(void *user, size_t number, const char *name, double z, double off) {
+static void tell_outline(void *user, const city_laid *laid) {
     levelings *l = user;
-    tell_one(l, l->im->outlines.data[number].input, "outline of a building at a height that is none, put on the ground",
-             name, z, off);
+    tell_one(l, l->im->outlines.data[laid->number].input,
+             "outline of a building at a height that is none, put on the ground", laid);
 }
 
 static void warn_of_levels(const importer *im, const leveling *of, const char *one, const char *many) {
