@@ -4,14 +4,13 @@ import sys
 import time
 
 import tap
-from wire import Client, Program
+from wire import LIMIT, Picture, Program, joined
 
 CITY = ("builtin:city", "--city-size", "150", "--threads", "2")
 
 
 def enter(p, width=320, height=180):
-    c = Client(p)
-    assert c.status == 101, c.status
+    c = joined(p)
     c.say("hello", width=width, height=height)
     c.welcome = c.text_of("welcome")
     c.picture()
@@ -20,6 +19,18 @@ def enter(p, width=320, height=180):
 
 def said(c, t, wanted=lambda m: True, timeout=180):
     return c.wait_for(lambda m: isinstance(m, dict) and m["t"] == t and wanted(m), timeout)
+
+
+def moves(c, count, **values):
+    """Inputs, each when the one before is seen, until so many pictures are moving ones: a client or a program that
+    stands still for a moment rests meanwhile. Returns the number of the last input."""
+    seen, n, end = 0, 0, time.monotonic() + LIMIT
+    while seen < count:
+        assert time.monotonic() < end, "%d of %d pictures are moving" % (seen, n)
+        n += 1
+        c.say("input", n=n, **values)
+        seen += c.wait_for(lambda m, n=n: isinstance(m, Picture) and m.input == n).moving
+    return n
 
 
 def all_see(clients, timeout=180):

@@ -17,13 +17,13 @@ from wire import LIMIT, TOKEN, Client, Picture, Program
 def test_a_picture_shows_the_newest_input(p):
     c = enter(p)
     eye = said(c, "stats")["camera"]["target"]
-    for n in range(1, 31):
+    hand.moves(c, 3, turn=[0.01, 0])
+    for n in range(100001, 100031):
         c.say("input", n=n, seconds=0.03, turn=[0.01, 0], keys=[])
-    picture = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 30)
-    assert picture.moving
-    c.say("input", n=31, seconds=0.03, turn=[0.2, 0])
+    c.wait_for(lambda m: isinstance(m, Picture) and m.input == 100030)
+    c.say("input", n=100031, seconds=0.03, turn=[0.2, 0])
     figures = said(c, "stats")
-    picture = c.wait_for(lambda m: isinstance(m, Picture) and m.input == 31)
+    c.wait_for(lambda m: isinstance(m, Picture) and m.input == 100031)
     assert not near(figures["camera"]["target"], eye, 1e-6)
     c.close()
 
@@ -67,9 +67,7 @@ def test_rest_is_whole_exact_and_ends(p):
         assert False, "a picture after the last one"
     except socket.timeout:
         pass
-    before = p.cpu()
-    time.sleep(2)
-    assert p.cpu() - before < 0.1, "it renders at rest"
+    p.rests()
     c.close()
 
 
@@ -183,7 +181,7 @@ def test_a_pane_that_was_not_looked_at_catches_up(p):
             told[m["pane"]] = m["show"]
         return isinstance(m, Picture) and m.pane == 1 and m.input == 2
 
-    c.wait_for(wanted, timeout=20)
+    c.wait_for(wanted)
     assert told[1] == "depth", told
     c.close()
 
@@ -256,13 +254,14 @@ def test_a_picture_that_moves_is_as_bright(p):
         c.say("set", name="tonemap", value="filmic")
         rest = said(c, "stats")["ev100"]
         c.picture()
-    moving = []
-    for n in range(1, 13):
+    moving, n, end = [], 0, time.monotonic() + LIMIT
+    while len(moving) < 8 and time.monotonic() < end:
+        n += 1
         c.say("input", n=n, turn=[0.0005, 0])
         figures = said(c, "stats")
         picture = c.picture()
         moving += [figures["ev100"]] if picture.moving else []
-    assert len(moving) > 4 and all(abs(ev - rest) < 0.15 for ev in moving), (rest, moving)
+    assert len(moving) == 8 and all(abs(ev - rest) < 0.15 for ev in moving), (rest, moving)
     c.close()
 
 
@@ -373,7 +372,7 @@ def test_cameras_by_name_do_not_starve(p):
     """They come as fast as they may, among other things; pictures go on, and the newest is what is seen."""
     c = enter(p)
     seen, n, start = 0, 0, time.monotonic()
-    while seen < 6 and time.monotonic() - start < 90:
+    while seen < 6 and time.monotonic() - start < LIMIT:
         n += 1
         c.say("camera", name=("street", "overview", "aerial")[n % 3], n=n)
         c.say("navigate", mode="fly")
@@ -382,7 +381,7 @@ def test_cameras_by_name_do_not_starve(p):
         except socket.timeout:
             pass
     assert seen == 6, seen
-    c.wait_for(lambda m: isinstance(m, Picture) and m.input == n, timeout=20)
+    c.wait_for(lambda m: isinstance(m, Picture) and m.input == n)
     c.close()
 
 
@@ -452,7 +451,7 @@ def test_many_come_and_go(p):
 
 # ---- how it begins and ends
 
-def run(*arguments, timeout=60):
+def run(*arguments, timeout=LIMIT):
     done = subprocess.run([os.environ["NOC_PROGRAM"], "view", *arguments], capture_output=True, text=True,
                           timeout=timeout, check=False)
     return done.returncode, done.stderr, done.stdout
@@ -536,7 +535,7 @@ def test_a_link_that_nobody_gets(p):
     """It ends where the link cannot be written: nobody could come."""
     for end in ">/dev/full", ">&-":
         got = subprocess.run(["sh", "-c", 'exec "$0" view builtin:single --port 0 ' + end, os.environ["NOC_PROGRAM"]],
-                             stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+                             stderr=subprocess.PIPE, text=True, timeout=LIMIT, check=False)
         assert got.returncode == 1 and "standard output" in got.stderr, (end, got)
 
 
@@ -570,9 +569,11 @@ def test_an_interruption_is_before_what_waits(p):
     each = (q.cpu() - before) / 20
     for i in range(600):
         go(i)
-    time.sleep(1)
+    said(c, "state")
+    os.kill(q.pid, signal.SIGSTOP) # its time is read, and nothing is done until the signal is there
     others, used = resource.getrusage(resource.RUSAGE_CHILDREN), q.cpu()
-    ended, text = q.end()
+    os.kill(q.pid, signal.SIGINT)
+    ended, text = q.end(signal.SIGCONT)
     now = resource.getrusage(resource.RUSAGE_CHILDREN)
     after = now.ru_utime + now.ru_stime - others.ru_utime - others.ru_stime - used
     assert ended == 130, (ended, text)
@@ -580,7 +581,7 @@ def test_an_interruption_is_before_what_waits(p):
 
 
 def test_an_interruption_while_it_loads(p):
-    q = Program("builtin:city", "--city-size", "1500")
+    q = Program("builtin:city", "--city-size", "5000")
     c = Client(q)
     c.say("hello", width=320, height=180)
     assert said(c, "loading")["done"] >= 0

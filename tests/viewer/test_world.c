@@ -162,7 +162,8 @@ static void traffic_goes_and_drives(void **state) {
     uint64_t told = world_told(c.world), version = world_version(c.world);
     nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL);
     assert_true(world_version(c.world) == version); /* nobody looks */
-    for (int i = 0; i < 400 && world_version(c.world) < version + 3; i++) {
+    /* so often against hangs alone */
+    for (int i = 0; i < 12000 && world_version(c.world) < version + 3; i++) {
         world_look(c.world);
         nanosleep(&(struct timespec){ .tv_nsec = 10000000 }, NULL);
     }

@@ -17,9 +17,7 @@ def test_rest_motion_and_numbers(p):
     c.say("set", name="frames", value="2")
     rest = c.wait_for(lambda m: isinstance(m, Picture) and m.codec == 1 and m.frames >= 2)
     assert (rest.width, rest.height) == (64, 36) and not rest.moving
-    for n in range(1, 4):  # smoothed
-        c.say("input", n=n, seconds=0.03, turn=[0.02, 0], keys=["forward"])
-        assert c.wait_for(lambda m: isinstance(m, Picture) and m.input == n).moving
+    hand.moves(c, 3, seconds=0.03, turn=[0.02, 0], keys=["forward"])  # smoothed
     for mode in "depth", "object", "influential":
         c.say("set", name="show", value=mode)
         said(c, "state", lambda m: m["panes"][0]["values"]["show"] == mode)

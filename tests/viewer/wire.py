@@ -31,7 +31,7 @@ class Picture:
         self.moving = bool(self.flags & 1)
 
 
-LIMIT = 120 # s: what has not come by then does not come; machines that run many tests at once stand still for a while
+LIMIT = 180 # s: what has not come by then does not come; machines that run many tests at once stand still for a while
 
 
 class Program:
@@ -66,6 +66,16 @@ class Program:
         with open("/proc/%d/stat" % self.pid, encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def rests(self, seconds=2, share=0.05):
+        """Waits until it uses next to no processor for so long: when that begins is the machine's business, but what
+        goes on rendering never is at rest."""
+        end, used = time.monotonic() + LIMIT, []
+        while not used or used[-1] > share * seconds:
+            assert time.monotonic() < end, "it never rests: %s s of each %g s" % (used, seconds)
+            before = self.cpu()
+            time.sleep(seconds)
+            used.append(round(self.cpu() - before, 3))
 
     def alive(self):
         return self.process.poll() is None
