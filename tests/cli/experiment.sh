@@ -183,7 +183,7 @@ stop() {
     tries=0
     until eval "$reached" || ! kill -0 $pid 2>/dev/null; do
         tries=$((tries + 1))
-        [ $tries -gt 3000 ] && break
+        [ $tries -gt 15000 ] && break # against hangs alone
         sleep 0.02
     done
     kill -"$signal" $pid 2>/dev/null
