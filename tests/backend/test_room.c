@@ -63,7 +63,7 @@ static int limited(size_t more, noc_status (*work)(noc_scene *scene, noc_log *lo
         struct rlimit limit = { address_space() + more, address_space() + more }, none = { 0 };
         noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
         setrlimit(RLIMIT_CORE, &none);
-        alarm(60); /* one that hangs ends by a signal too */
+        alarm(300); /* one that hangs ends by a signal too */
         _exit(!log || setrlimit(RLIMIT_AS, &limit) ? OTHER : outcome(work(scene, log), log));
     }
     int status = 0;

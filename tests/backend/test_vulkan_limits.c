@@ -417,7 +417,7 @@ static void a_pipe_in_place_of_the_cache(void **state) {
         at += (size_t)snprintf(path + at, sizeof(path) - at, "%02x", p.pipelineCacheUUID[i]);
     snprintf(path + at, sizeof(path) - at, ".bin");
     assert_int_equal(mkfifo(path, 0600), 0);
-    alarm(200); /* as if it hung */
+    alarm(300); /* as if it hung */
     assert_non_null(device = open_vulkan());
     alarm(0);
     noc_device_destroy(device);

@@ -307,43 +307,46 @@ static void leave(int fd) {
         while (getppid() == first)
             usleep(1000);
         pid_t self = getpid();
-        _exit(write(fd, &self, sizeof(self)) == sizeof(self) ? (sleep(60), 0) : 1);
+        _exit(write(fd, &self, sizeof(self)) == sizeof(self) ? (sleep(600), 0) : 1);
     }
     _exit(0);
 }
 
-/* The keeper of a reader that has left a child behind, and its number. */
-static pid_t keep_one(pid_t *left, bool ends) {
+/* The keeper of a reader that has left a child behind, and its number. The reader goes on until it hears something. */
+static pid_t keep_one(pid_t *left, int *to) {
     int ends_of[2];
-    assert_int_equal(pipe(ends_of), 0);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends_of), 0);
     int fd = fcntl(ends_of[1], F_DUPFD, 20); /* away from that of the socket, which the keeper closes */
     pid_t test = getpid(), keeper = fork(), parent;
     if (!keeper) {
         if (!remote_keep(&parent) || parent != test)
             _exit(1);
+        close(ends_of[0]);
         leave(fd);
-        if (ends) {
-            sleep(1); /* until it has told */
+        char go;
+        if (read(fd, &go, 1) == 1)
             raise(SIGXCPU);
-        }
         for (;;)
             pause();
     }
     assert_int_equal(read(ends_of[0], left, sizeof(*left)), sizeof(*left));
-    close(ends_of[0]);
     close(ends_of[1]);
     close(fd);
+    *to = ends_of[0];
     return keeper;
 }
 
 static void what_it_started_is_ended(void **state) {
     for (int ends = 0; ends < 2; ends++) {
-        int how;
-        pid_t left, keeper = keep_one(&left, ends);
+        int how, to;
+        pid_t left, keeper = keep_one(&left, &to);
         assert_int_equal(kill(left, 0), 0);
-        if (!ends)
+        if (ends)
+            assert_int_equal(write(to, "", 1), 1);
+        else
             kill(keeper, SIGTERM);
         assert_int_equal(waitpid(keeper, &how, 0), keeper);
+        close(to);
         assert_int_equal(kill(left, 0), -1);
         assert_int_equal(errno, ESRCH);
         assert_true(WIFSIGNALED(how));

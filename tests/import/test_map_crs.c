@@ -20,7 +20,7 @@ static int make_pipe(void **state) {
         return -1;
     snprintf(pipe_path, sizeof(pipe_path), "%s/pipe", folder);
     snprintf(absent, sizeof(absent), "%s/none", folder);
-    alarm(120); /* what hangs fails */
+    alarm(300); /* what hangs fails */
     return mkfifo(pipe_path, 0600);
 }
 
