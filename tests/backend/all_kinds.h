@@ -82,8 +82,9 @@ static inline void add_panes(noc_scene *s, int model) {
     add_pane(s, 0.5f, 0, model, (double[]){ -0.5, -0.3, 0 }, 1, 1.5, false);
 }
 
-/* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles. */
-static inline noc_scene *all_kinds_with(bool panes, int *car) {
+/* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles; not
+ * committed. */
+static inline noc_scene *all_kinds_open(bool panes, int *car) {
     noc_scene *s = noc_scene_create(NULL);
     int texture = chequers(s), profiles = add_test_profiles(s);
     int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { .2f, .2f, .25f }, .f0 = .05f, .roughness = .3f });
@@ -118,6 +119,11 @@ static inline noc_scene *all_kinds_with(bool panes, int *car) {
         assert_true(index >= 0);
         *car = index;
     }
+    return s;
+}
+
+static inline noc_scene *all_kinds_with(bool panes, int *car) {
+    noc_scene *s = all_kinds_open(panes, car);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
 }

@@ -148,6 +148,73 @@ static void edits_have_the_same_bits(void **state) {
     }
 }
 
+/* Models with lights, on a way before the camera. */
+static noc_scene *street_of_cars(void) {
+    static const noc_scene_stop stops[] = { { 0, { -5, -4, 0 }, 0 },
+                                            { 10, { 5, -4, 0 }, 10 },
+                                            { 14, { 5, -1, 0 }, 13 } };
+    int car;
+    noc_scene *scene = all_kinds_open(false, &car);
+    int route = noc_scene_add_route(scene, stops, NOC_COUNT(stops));
+    assert_true(route >= 0);
+    for (int i = 0; i < 5; i++)
+        assert_true(noc_scene_add_car(scene, 1, route, 2.5 * i, 2));
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    return scene;
+}
+
+/* Cars with their lamps drive, are taken out of sight and come back, as `animate` and the viewer have them. Returns how
+ * many pixels saw a car, or another instance. */
+static size_t drive(twins *t, noc_scene *scene, const noc_camera *camera, const noc_render_params *p,
+                    const char *name) {
+    static const double times[] = { 0, 0.25, 0.5, 0.5, 40, 40.25 };
+    size_t seen = 0;
+    for (size_t f = 0; f < NOC_COUNT(times); f++) {
+        if (f)
+            assert_int_equal(noc_scene_set_time(scene, times[f]), NOC_OK);
+        if (f == 3 || f == 4)
+            assert_int_equal(noc_scene_show_cars(scene, f == 4), NOC_OK);
+        assert_int_equal(noc_scene_commit(scene), NOC_OK);
+        expect_same_frame(t, camera, p, name);
+        const frame_buffers *b = &cpu_of(t)->b;
+        size_t before = seen;
+        for (size_t i = 0; i < (size_t)b->blocks_x * b->blocks_y * BLOCK; i++)
+            seen += b->instance[0][i] != NO_INSTANCE;
+        assert_true(seen > before);
+    }
+    return seen;
+}
+
+static void cars_have_the_same_bits(void **state) {
+    static const struct {
+        const char *name;
+        noc_candidates candidates;
+        noc_bias bias;
+    } rows[] = { { "cars, pairwise", NOC_CANDIDATES_UNIFORM, NOC_BIAS_PAIRWISE },
+                 { "cars, mis, light-bvh", NOC_CANDIDATES_LIGHT_BVH, NOC_BIAS_MIS },
+                 { "cars, lists", NOC_CANDIDATES_LISTS, NOC_BIAS_PAIRWISE } };
+    (void)state;
+    if (!has_vulkan(messages))
+        skip();
+    for (size_t row = 0; row < NOC_COUNT(rows); row++) {
+        noc_scene *scene = street_of_cars();
+        noc_scene_info info;
+        noc_camera camera = look(0, -11, 3, 0, 0, 2, 60);
+        twins t;
+        noc_scene_get_info(scene, &info);
+        assert_int_equal(info.cars, 5);
+        open_twins(scene, true, messages, &t);
+        noc_render_params p = all_kinds_params(NOC_METHOD_RESTIR, false);
+        p.candidates = rows[row].candidates;
+        p.bias = rows[row].bias;
+        size_t seen = drive(&t, scene, &camera, &p, rows[row].name);
+        print_message("# %s: %zu pixels of cars\n", rows[row].name, seen);
+        assert_true(seen > 50);
+        close_twins(&t);
+        noc_scene_destroy(scene);
+    }
+}
+
 /* ---- views ---- */
 
 #define AOV(name) (1u << NOC_AOV_##name)
@@ -391,13 +458,10 @@ static void views_are_independent(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans_have_the_same_bits),
-        cmocka_unit_test(all_kinds_have_the_same_bits),
-        cmocka_unit_test(views_have_the_same_bits),
-        cmocka_unit_test(pictures_do_not_change_by_views),
-        cmocka_unit_test(scratch_may_hold_anything),
-        cmocka_unit_test(edits_have_the_same_bits),
-        cmocka_unit_test(rays_agree),
+        cmocka_unit_test(plans_have_the_same_bits),  cmocka_unit_test(all_kinds_have_the_same_bits),
+        cmocka_unit_test(views_have_the_same_bits),  cmocka_unit_test(pictures_do_not_change_by_views),
+        cmocka_unit_test(scratch_may_hold_anything), cmocka_unit_test(edits_have_the_same_bits),
+        cmocka_unit_test(cars_have_the_same_bits),   cmocka_unit_test(rays_agree),
         cmocka_unit_test(views_are_independent),
     };
     messages = noc_log_create(NULL);

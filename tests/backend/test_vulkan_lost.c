@@ -30,6 +30,19 @@ static void expect_same(const char *when, const noc_image *a, const noc_image *b
         fail_msg("%s: what is left is not the picture that was read", when);
 }
 
+static bool cut; /* frames are run in pieces */
+
+static bool go_on(void *user, const char *what, double done) { return true; }
+
+/* In pieces of a row of blocks, or whole. */
+static noc_status render_one(noc_view *v, const noc_render_params *p) {
+    vk_pace *pace = &((vk_view *)v->state)->pace;
+    for (int pass = 0; pass < NOC_PASS_COUNT && cut; pass++)
+        for (int shader = 0; shader < VK_SHADER_COUNT; shader++)
+            pace->cost[pass][shader] = 1;
+    return noc_view_render(v, &camera, p, cut ? &(noc_progress){ go_on, NULL } : NULL);
+}
+
 /* Renders, and reads after READ frames. *complete: frames that were rendered. */
 static noc_status render_and_read(noc_device *device, noc_scene *scene, const noc_render_params *p, noc_view **v,
                                   uint64_t *complete, bool *read) {
@@ -37,7 +50,7 @@ static noc_status render_and_read(noc_device *device, noc_scene *scene, const no
     if (!(*v = noc_view_create(device, scene)))
         return noc_log_last_status(messages);
     for (int f = 0; f < FRAMES && status == NOC_OK; f++) {
-        status = noc_view_render(*v, &camera, p, NULL);
+        status = render_one(*v, p);
         *complete += status == NOC_OK;
         if (status != NOC_OK || f + 1 != READ)
             continue;
@@ -175,6 +188,17 @@ static void what_is_kept_stays(void **state) {
     lose_in_turn(&p, true, 11);
 }
 
+/* The device may be lost in any piece of a frame. */
+static void lost_between_pieces(void **state) {
+    noc_render_params p = params_of(NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM);
+    (void)state;
+    if (!has_vulkan())
+        skip();
+    cut = true;
+    lose_in_turn(&p, true, 37);
+    cut = false;
+}
+
 static void views_of_a_lost_device(void **state) {
     noc_render_params p = params_of(NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM);
     (void)state;
@@ -217,9 +241,8 @@ static void an_older_mean_is_gone(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_read_stays),
-        cmocka_unit_test(what_is_kept_stays),
-        cmocka_unit_test(views_of_a_lost_device),
+        cmocka_unit_test(what_was_read_stays),   cmocka_unit_test(what_is_kept_stays),
+        cmocka_unit_test(lost_between_pieces),   cmocka_unit_test(views_of_a_lost_device),
         cmocka_unit_test(an_older_mean_is_gone),
     };
     messages = open_messages();

@@ -28,17 +28,29 @@ int a; /* this counts */ int b;
 const char *text = "/* no comment";
 char quote = '"'; /* a comment after a quote */
 const char *more = "// nor this";
+int f(void) { return load_it(3) + own(2); } /* not_asked(1) */
+int own(int x) { return x; }
 C
-printf 'int x;\nint y;\n' >"$work/tree/src/backend/cpu/reuse.c"
+cat >"$work/tree/src/backend/cpu/reuse.c" <<'C'
+int x;
+int load_it(int i) {
+    return i; /* core asks for it */
+}
+static int not_asked(int i) { return i; }
+static int own(int x) { return x; }
+C
 printf 'int x;\n' >"$work/tree/src/backend/cpu/lanes_tmpl.h"
 printf 'int x;\n' >"$work/tree/tests/test.c"
 printf 'int x;\n' >"$work/tree/src/core/meson.build"
 python3 "$source_dir/tools/rooms.py" "$work/tree" >"$work/out" 2>&1
-figure src/core/ 4
-figure src/backend/cpu/ 3
-figure ' reuse.c' 2
+figure src/core/ 6
+figure src/backend/cpu/ 7
+figure ' reuse.c' 6
+figure ' of these, bridges' 3
 figure ' lanes_tmpl.h (machine)' 1
-figure all 7
-figure 'algorithm, outside core/ and render/' 2
+figure all 13
+figure 'algorithm and bridges' 6
+figure 'bridges, that core calls by name' 3
+figure 'algorithm, outside core/ and render/' 3
 echo "1..$count"
 exit $failed
