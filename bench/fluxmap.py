@@ -3,10 +3,11 @@
 
 usage: bench/fluxmap.py [PROGRAM]
 
-Reads ../shared/data/measured/fluxmap (irawinder/FluxMap, MIT): two logs of lux, and the city's 6,049 street lamps. The
-sensor's height and tilt are not told, there are no buildings, and no flux of a lamp: so ranks are compared, not lux. The
-first recipe has equal Lambertian lamps 8.5 m up. The second one has what the words of the inventory let expect: lanterns
-stand lower and shine to all sides, and the fixture types A1, A2, A3 are taken for large, middling and small ones.
+Reads ../shared/data/measured/fluxmap (irawinder/FluxMap, MIT): two logs of lux, and the city's 6,049 street lamps.
+The sensor's height and tilt are not told, there are no buildings, and no flux of a lamp: so ranks are compared, not
+lux. The first recipe has equal Lambertian lamps 8.5 m up. The second one has what the words of the inventory let
+expect: lanterns stand lower and shine to all sides, and the fixture types A1, A2, A3 are taken for large, middling and
+small ones.
 """
 import csv
 import gzip
