@@ -28,6 +28,11 @@ NOC_API int noc_text_yaml(char *text, size_t size, const char *from);
 
 /* Which of the words was meant, by a mistake or two in its letters or by its beginning. NULL: none is near. */
 NOC_API const char *noc_text_nearest(const char *word, const char *const *words, size_t count);
+
+/* A name as a search compares it: without case and without marks on Latin letters. A hyphen is a blank, ß is ss, ae and
+ * ä are a, "str." and a word's end "str" are "strasse". whole: it is a name; else a part of one is being typed, whose
+ * last word may go on. free() it. NULL: no memory, or no text. */
+NOC_API char *noc_text_fold(const char *text, bool whole);
 /* Exactly count finite decimal numbers with the separator between them, such as "1.5,-3,2e3", and nothing else. */
 NOC_API bool noc_text_numbers(const char *text, char separator, size_t count, double *out);
 

@@ -20,10 +20,14 @@ noc_status ask_point(const asked *a);
 noc_status ask_pixel(const asked *a);
 noc_status ask_rect(const asked *a);
 
-/* named.c */
+/* named.c, streets.c */
 noc_status ask_object(const asked *a);
-noc_status ask_street(const asked *a);
 noc_status ask_polygon(const asked *a);
+noc_status ask_street(const asked *a);
+
+enum { ASK_PLACES = 20000 };      /* points that ground is made of, about */
+#define ASK_FINEST 0.1            /* m between them */
+extern const uint32_t ask_ground; /* classes that are ground: 1u << noc_class each */
 
 /* area.c: ground as it is seen from above, by points of a grid. */
 typedef struct ask_cells {

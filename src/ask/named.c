@@ -1,45 +1,37 @@
-/* Regions that have a name, and polygons. */
+/* Objects by their id, and polygons. */
 #include "ask/ask.h"
 
 #include <math.h>
 #include <unistd.h>
 
-enum { PLACES = 20000, MOST_CELLS = 4000000 }; /* points that a region is made of, about; cells that are looked at */
+enum { MOST_CELLS = 4000000 }; /* that are looked at */
 
-#define FINEST 0.1   /* m between points */
-#define PAVEMENT 4.0 /* m beside a carriageway that pavements are looked for in */
+const uint32_t ask_ground = 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_BRIDGE |
+                            1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_WATER |
+                            1u << NOC_CLASS_GROUND | 1u << NOC_CLASS_OTHER;
 
-static const uint32_t roads = 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_BRIDGE;
-static const uint32_t ground = 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_BRIDGE |
-                               1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_WATER |
-                               1u << NOC_CLASS_GROUND | 1u << NOC_CLASS_OTHER;
-
-/* Names that there are, one of each; NULL where memory was refused. */
-typedef const char *name_at(const noc_scene *scene, size_t index);
-
-static noc_status not_found(const asked *a, const char *what, size_t count, name_at *at) {
+static noc_status no_object(const asked *a) {
+    size_t count = noc_scene_object_slots(a->scene), n = 0;
     const char **names = noc_alloc(NOC_MAX(count, 1) * sizeof(*names)), *last = NULL;
     char said[64], near[64];
-    size_t n = 0;
     if (!names)
         return noc_no_memory(a->log, "region");
     for (size_t i = 0; i < count; i++) {
-        const char *name = at(a->scene, i);
+        const char *name = noc_scene_object_name(a->scene, i);
         if (name && *name && (!last || strcmp(name, last) != 0))
             last = names[n++] = name;
     }
     noc_text_clean(said, sizeof(said), a->text);
     const char *nearest = noc_text_nearest(a->text, names, n);
-    noc_status status = nearest ? noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no %s \"%s\"; is it \"%s\"?",
-                                            what, said, noc_text_clean(near, sizeof(near), nearest))
-                                : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no %s \"%s\" among %zu%s%s%s",
-                                            what, said, n, n ? "; the first is \"" : "",
-                                            n ? noc_text_clean(near, sizeof(near), names[0]) : "", n ? "\"" : "");
+    noc_status status = nearest
+                            ? noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no object \"%s\"; is it \"%s\"?",
+                                        said, noc_text_clean(near, sizeof(near), nearest))
+                            : noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no object \"%s\" among %zu%s%s%s",
+                                        said, n, n ? "; the first is \"" : "",
+                                        n ? noc_text_clean(near, sizeof(near), names[0]) : "", n ? "\"" : "");
     free(names);
     return status;
 }
-
-static const char *object_at(const noc_scene *scene, size_t i) { return noc_scene_object_name(scene, i); }
 
 noc_status ask_object(const asked *a) {
     noc_region_info info;
@@ -51,57 +43,7 @@ noc_status ask_object(const asked *a) {
         if (name && !strcmp(name, a->text))
             return status; /* it is there, and what is wrong was told */
     }
-    return none ? not_found(a, "object", noc_scene_object_slots(a->scene), object_at) : status;
-}
-
-/* ---- streets ---- */
-
-static const char *street_at(const noc_scene *scene, size_t i) {
-    noc_street s;
-    return noc_scene_get_street(scene, i, &s) ? s.name : NULL;
-}
-
-static double length_of(const noc_street *s) {
-    double sum = 0;
-    for (size_t i = 0; i + 1 < s->point_count; i++)
-        sum +=
-            hypot((double)s->points[2 * i + 2] - s->points[2 * i], (double)s->points[2 * i + 3] - s->points[2 * i + 1]);
-    return sum;
-}
-
-static noc_status add_streets(const asked *a, double step, double beside, uint32_t classes, size_t *found,
-                              size_t *looked) {
-    ask_cells cells = { .step = step };
-    noc_street s;
-    noc_status status = NOC_OK;
-    for (size_t i = 0; noc_scene_get_street(a->scene, i, &s) && !status; i++)
-        if (noc_ieq(s.name, a->text) || noc_ieq(s.id, a->text))
-            status = ask_add_line(a, &s, s.width / 2 + beside, &cells);
-    *looked = cells.keys.len;
-    status = status ? status : ask_add_ground(a, &cells, classes, found);
-    array_free(&cells.keys);
-    return status;
-}
-
-/* The roads and pavements beside its middle; where the scene has none there, the ground as wide as the carriageway. */
-noc_status ask_street(const asked *a) {
-    double area = 0;
-    noc_street s;
-    for (size_t i = 0; noc_scene_get_street(a->scene, i, &s); i++)
-        if (noc_ieq(s.name, a->text) || noc_ieq(s.id, a->text))
-            area += length_of(&s) * (s.width + 2 * PAVEMENT);
-    if (!(area > 0))
-        return not_found(a, "street", noc_scene_streets(a->scene), street_at);
-    double step = fmax(FINEST, sqrt(area / PLACES));
-    size_t found = 0, looked = 0;
-    noc_status status = add_streets(a, step, PAVEMENT, roads, &found, &looked);
-    if (!status && !found)
-        status = add_streets(a, step, 0, ground, &found, &looked);
-    char said[64];
-    return status || found
-               ? status
-               : noc_error(a->log, NOC_ERR_ARGUMENT, "region: street \"%s\" has no ground that is seen from above",
-                           noc_text_clean(said, sizeof(said), a->text));
+    return none ? no_object(a) : status;
 }
 
 /* ---- polygons ---- */
@@ -164,10 +106,10 @@ noc_status ask_polygon(const asked *a) {
     size_t found = 0;
     status = to_local(a, &rings);
     if (!status) {
-        cells.step = fmax(FINEST, fmax(sqrt(area_of(&rings) / PLACES), sqrt(box_of(&rings) / MOST_CELLS)));
+        cells.step = fmax(ASK_FINEST, fmax(sqrt(area_of(&rings) / ASK_PLACES), sqrt(box_of(&rings) / MOST_CELLS)));
         status = ask_add_rings(a, &rings, &cells);
     }
-    status = status ? status : ask_add_ground(a, &cells, ground, &found);
+    status = status ? status : ask_add_ground(a, &cells, ask_ground, &found);
     if (!status && !found)
         status =
             noc_error(a->log, NOC_ERR_ARGUMENT, "region: there is no ground in the polygon that is seen from above");

@@ -61,12 +61,14 @@ static const char *find_crs(const char *text) {
     return NULL;
 }
 
-static noc_status add_point(const asked *a) {
+/* said: the text as it was given, with its CRS. */
+static noc_status add_point(const asked *a, const char *said) {
     double n[6] = { 0, 0, 0, 0, 0, 1 }, ground;
     bool turned = noc_text_numbers(a->text, ',', 6, n), placed = turned || noc_text_numbers(a->text, ',', 3, n);
     if (!placed && !noc_text_numbers(a->text, ',', 2, n))
-        return noc_error(a->log, NOC_ERR_ARGUMENT, "region: point:%.60s is not X,Y or X,Y,Z or X,Y,Z,NX,NY,NZ",
-                         a->text);
+        return noc_error(
+            a->log, NOC_ERR_ARGUMENT,
+            "region: point:%.60s is not X,Y or X,Y,Z or X,Y,Z,NX,NY,NZ, each with a CRS at the end or without", said);
     noc_status status = ask_to_local(a, n);
     if (status != NOC_OK)
         return status;
@@ -86,7 +88,7 @@ noc_status ask_point(const asked *a) {
     const char *crs = find_crs(a->text), *end = crs;
     char numbers[400];
     if (!crs)
-        return add_point(a);
+        return add_point(a, a->text);
     while (*--end != ',') {}
     noc_region_params params = *a->params;
     asked in_crs = *a;
@@ -94,7 +96,7 @@ noc_status ask_point(const asked *a) {
     in_crs.params = &params;
     in_crs.text = numbers;
     noc_snprintf(numbers, sizeof(numbers), "%.*s", (int)NOC_MIN(end - a->text, 399), a->text);
-    return add_point(&in_crs);
+    return add_point(&in_crs, a->text);
 }
 
 /* ---- pixels ---- */

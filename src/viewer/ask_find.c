@@ -1,8 +1,6 @@
 /* What is called so, and what things are called: search by name, and the name of what a pointer is over. */
 #include "viewer/ask_parts.h"
 
-#include "viewer/fold.h"
-
 #include <nocturne/influence.h>
 
 #include <math.h>
@@ -152,7 +150,7 @@ static void add_found(const asker *a, json_t *list, int kind, const struct named
 static size_t find_kind(const asker *a, int kind, names *of, const char *text, json_t *list) {
     matches m = { 0 };
     for (size_t i = 0; i < of->count && !ask_stopped(a); i++) {
-        of->of[i].folded = fold_name(of->of[i].name, true);
+        of->of[i].folded = noc_text_fold(of->of[i].name, true);
         offer(&m, &of->of[i], text);
     }
     for (size_t i = 0; i < m.count; i++)
@@ -177,7 +175,7 @@ static void add_nearest(const asker *a, int kind, const names *of, const char *t
 void ask_find(asker *a, const question *q) {
     json_t *m = ask_begin(q, 1), *found = json_array(), *near = json_array();
     names of[KINDS] = { 0 };
-    char *text = fold_name(q->ask.text, false);
+    char *text = noc_text_fold(q->ask.text, false);
     size_t more = 0;
     for (int k = 0; k < KINDS && text && *text; k++) {
         kinds[k].list(a, &of[k]);

@@ -5,12 +5,13 @@
 #include "scene/region.h"
 
 #include <nocturne/influence.h>
+#include <nocturne/text.h>
 #include <unistd.h>
 
 static char told[512];
 static void keep_message(void *user, noc_log_level level, const char *text) {
     (void)user;
-    if (level == NOC_LOG_ERROR)
+    if (level <= NOC_LOG_WARN)
         noc_snprintf(told, sizeof(told), "%s", text);
 }
 
@@ -55,6 +56,13 @@ static noc_scene *town(noc_log *log) {
     point_light(s, 0, 0, 6, 100);
     const double line[] = { -40, 0, NAN, 40, 0, NAN };
     assert_true(noc_scene_add_street(s, &(noc_scene_street){ "Main Street", "way/1", 6, 0, 0 }, line, 2));
+    static const char *const others[] = { "M\xc3\xbcllerstra\xc3\x9f"
+                                          "e",
+                                          "Hinterstr.",
+                                          "Gro\xc3\x9f"
+                                          "e Gasse" };
+    for (size_t i = 0; i < NOC_COUNT(others); i++)
+        assert_true(noc_scene_add_street(s, &(noc_scene_street){ others[i], "way/2", 6, 0, 0 }, line, 2));
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
 }
@@ -216,6 +224,47 @@ static void polygons_may_have_many_corners(void **state) {
     noc_region_destroy(r);
 }
 
+/* As people write names: what is taken is said. A name that is there is taken without a word. */
+static void streets_are_found_as_people_spell_them(void **state) {
+    const world *w = *state;
+    static const char *const spelt[][2] = { { "MAIN  street", "Main Street" },
+                                            { "Muellerstr.", "M\xc3\xbcllerstra" },
+                                            { "mullerstrasse", "M\xc3\xbcllerstra" },
+                                            { "Mu\xcc\x88llerstr", "M\xc3\xbc" },
+                                            { "Hinterstra\xc3\x9f"
+                                              "e",
+                                              "Hinterstr." },
+                                            { "Grosse-Gasse", "Gro\xc3\x9f" } };
+    for (size_t i = 0; i < NOC_COUNT(spelt); i++) {
+        noc_region_info info;
+        char text[64], says[64];
+        noc_snprintf(text, sizeof(text), "street:%s", spelt[i][0]);
+        noc_snprintf(says, sizeof(says), "is taken for \"%s", spelt[i][1]);
+        noc_region *r = find(w, text, &info);
+        if (!r || !strstr(told, says))
+            fail_msg("%s: %s", text, told);
+        noc_region_destroy(r);
+    }
+    noc_region_info info;
+    noc_region_destroy(find(w,
+                            "street:m\xc3\xbcllerstra\xc3\x9f"
+                            "e",
+                            &info));
+    assert_string_equal(told, "");
+    static const char *const folded[][2] = { { "\xc4\x8c"
+                                               "esk\xc3\xa1 t\xc5\x99\xc3\xad"
+                                               "da",
+                                               "ceska trida" },
+                                             { "\xc5\x81\xc3\xb3"
+                                               "d\xc5\xba",
+                                               "lodz" } };
+    for (size_t i = 0; i < NOC_COUNT(folded); i++) {
+        char *name = noc_text_fold(folded[i][0], true);
+        assert_string_equal(name, folded[i][1]);
+        free(name);
+    }
+}
+
 static void wrong_ones_say_what_is_wrong(void **state) {
     const world *w = *state;
     static const struct {
@@ -238,7 +287,14 @@ static void wrong_ones_say_what_is_wrong(void **state) {
         { "object:house 6", "is it \"house 7\"?" },
         { "object:", "no object \"\"" },
         { "street:Main Stret", "is it \"Main Street\"?" },
-        { "street:zzz", "among 1; the first is \"Main Street\"" },
+        { "street:zzzzzzzzz", "among 4; the first is \"Gro" },
+        { "street:gasse", "is it \"Gro\xc3\x9f"
+                          "e Gasse\"?" },
+        { "street:Strasse", "is it \"Hinterstr.\" or \"M\xc3\xbcllerstra\xc3\x9f"
+                            "e\"?" },
+        { "street:house 7", "is an object of the model and no street of a map: ask for object:house 7" },
+        { "street:", "among 4; the first is" },
+        { "point:a,b", "point:a,b is not X,Y" },
         { "polygon:/no/such/file", "/no/such/file" },
         { "polygon:0,0,1,1", "0,0,1,1 is no file; corners are written as WKT" },
         { "polygon:POLYGON((0 0, 1 1))", "less than three" },
@@ -308,6 +364,7 @@ int main(void) {
         cmocka_unit_test(objects_are_their_surfaces_by_area),
         cmocka_unit_test(ground_is_what_is_seen_from_above),
         cmocka_unit_test(polygons_may_have_many_corners),
+        cmocka_unit_test(streets_are_found_as_people_spell_them),
         cmocka_unit_test(wrong_ones_say_what_is_wrong),
         cmocka_unit_test(files_of_polygons),
         cmocka_unit_test(points_in_another_crs),

@@ -191,6 +191,7 @@ static noc_camera camera;
     P(0, noc_text_seconds(NULL, 1)[0] == 0)                                                                            \
     P(0, noc_text_clean(NULL, 1, "a")[0] == 0)                                                                         \
     P(0, noc_text_clean((char[4]){ 1 }, 4, NULL)[0] == 0)                                                              \
+    P(0, noc_text_fold(NULL, true) == NULL)                                                                            \
     P(0, noc_text_nearest(NULL, NULL, 1) == NULL)                                                                      \
     P(0, noc_text_save(NULL, "a", 1, NULL) == NOC_ERR_ARGUMENT)                                                        \
     P(0, noc_text_save("/nonexistent/a", NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                           \
