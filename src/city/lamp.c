@@ -181,10 +181,10 @@ double city_floor(const noc_scene *scene) {
 /* Height of the foot. */
 static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, double foot[3],
                   geo_issues *issues) {
-    double deck;
-    bool on_deck = isfinite(lamp->xyz[2]) &&
-                   noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
-                   fabs(deck - lamp->xyz[2]) < 1;
+    double deck = lamp->xyz[2];
+    bool on_deck = lamp->on_deck || (isfinite(lamp->xyz[2]) &&
+                                     noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
+                                     fabs(deck - lamp->xyz[2]) < 1);
     if (on_deck) { /* which is no ground where it is not given as a road */
         foot[2] = deck;
         return;

@@ -140,6 +140,80 @@ static void water(void **state) {
     }
 }
 
+/* A valley 12 m deep from x 40 to 100, as terrain. */
+static const char *valley(void) {
+    static const double x[] = { -20, 40, 50, 90, 100, 260 }, z[] = { 40, 40, 28, 28, 40, 40 };
+    char text[3000], *end = text;
+    end += sprintf(end, "{\"type\":\"CityJSON\",\"version\":\"2.0\",\"metadata\":{\"referenceSystem\":"
+                        "\"https://www.opengis.net/def/crs/EPSG/0/25832\"},\"transform\":{\"scale\":[1,1,1],"
+                        "\"translate\":[690000,5330000,0]},\"CityObjects\":{\"t\":{\"type\":\"TINRelief\",\"geometry\":"
+                        "[{\"type\":\"CompositeSurface\",\"lod\":\"1\",\"boundaries\":[");
+    for (int i = 0; i < 5; i++)
+        end += sprintf(end, "%s[[%d,%d,%d]],[[%d,%d,%d]]", i ? "," : "", 2 * i, 2 * i + 2, 2 * i + 3, 2 * i, 2 * i + 3,
+                       2 * i + 1);
+    end += sprintf(end, "]}]}},\"vertices\":[");
+    for (int i = 0; i < 12; i++)
+        end += sprintf(end, "%s[%g,%d,%g]", i ? "," : "", x[i / 2], i % 2 ? 150 : -150, z[i / 2]);
+    sprintf(end, "]}");
+    return write_file("valley.city.json", text);
+}
+
+/* Height of the light near a place, by its easting and northing less 690000 and 5330000; NaN: there is none. */
+static double height_of(double x, double y) {
+    for (size_t i = 0; i < scene->lights.len; i++) {
+        const float *p = scene->lights.data[i].p;
+        if (hypot(p[0] + scene->origin[0] - 690000 - x, p[1] + scene->origin[1] - 5330000 - y) < 2.5)
+            return p[2] + scene->origin[2];
+    }
+    return NAN;
+}
+
+#define HIGH(id, more, place)                                                                                          \
+    FEATURE(id, "\"highway\":\"street_lamp\",\"height\":\"6\"" more, "\"type\":\"Point\",\"coordinates\":" place)
+#define APPROACHES                                                                                                     \
+    LINE("way/1", "\"highway\":\"residential\"", "[690000,5330000],[690039,5330000]")                                  \
+    "," LINE("way/3", "\"highway\":\"residential\"",                                                                   \
+             "[690101,5330000],[690240,5330000]") "," LINE("way/4", "\"highway\":\"residential\"",                     \
+                                                           "[690070,5329900],[690070,5330100]")
+#define BRIDGE(lit)                                                                                                    \
+    LINE("way/2", "\"highway\":\"residential\",\"bridge\":\"yes\",\"layer\":\"1\"" lit,                                \
+         "[690039,5330000],[690101,5330000]")
+
+/* Lamps of a bridge stand on its deck, on the pavement beside it, too, and those of the street below do not. */
+static void bridge_over_a_valley(void **state) {
+    const char *terrain = valley();
+    const char *map =
+        write_file("valley.json",
+                   MAP(APPROACHES "," BRIDGE("") "," HIGH("node/1", "", "[690055,5330004]") "," HIGH(
+                       "node/2", "", "[690085,5329998]") "," HIGH("node/3", "",
+                                                                  "[690066,5330040]") "," HIGH("node/4", "",
+                                                                                               "[690020,5330004]")));
+    const char *lit = write_file("lit.json", MAP(APPROACHES "," BRIDGE(",\"lit\":\"yes\"")));
+    for (int surfaces = 0; surfaces < 2; surfaces++) {
+        noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+        params.map_surfaces = surfaces ? NOC_SWITCH_ON : NOC_SWITCH_OFF;
+        load_params(&params, terrain, map);
+        assert_true(fabs(height_of(55, 4) - 45.98) < 0.06); /* 6 m over the deck at 40 m; the ground is at 28 m */
+        assert_true(fabs(height_of(85, -2) - 45.98) < 0.06);
+        assert_true(fabs(height_of(66, 40) - 33.98) < 0.06);
+        assert_true(fabs(height_of(20, 4) - 45.98) < 0.06);
+        const noc_report_line *line = noc_report_get_file(report, 1)->lines;
+        assert_string_equal(line->reason, "lamp on a bridge of a map: put on its deck");
+        assert_string_equal(line->examples, "node/1, node/2");
+        load_params(&params, terrain, lit);
+        assert_true(scene->lights.len >= 2);
+        for (size_t i = 0; i < scene->lights.len; i++)
+            assert_true(fabs(scene->lights.data[i].p[2] + scene->origin[2] - 45.98) < 0.06);
+    }
+    noc_import_params params = params_of(NOC_SWITCH_AUTO, false); /* the surface of the bridge makes no hill */
+    params.map_surfaces = NOC_SWITCH_ON;
+    load_params(&params, terrain, map);
+    double z;
+    assert_true(
+        noc_scene_highest(scene, 1u << NOC_CLASS_TERRAIN, 690065 - scene->origin[0], 5330000 - scene->origin[1], &z));
+    assert_true(fabs(z + scene->origin[2] - 28) < 0.01);
+}
+
 static void box(void **state) {
     const char *plain =
         write_file("plain.json", MAP(LIT("way/1") "," LINE("way/9", "\"highway\":\"residential\",\"lit\":\"yes\"",
@@ -223,8 +297,14 @@ static int finish(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(when),   cmocka_unit_test(stable), cmocka_unit_test(water),   cmocka_unit_test(box),
-        cmocka_unit_test(facing), cmocka_unit_test(strict), cmocka_unit_test(a_dozen),
+        cmocka_unit_test(bridge_over_a_valley),
+        cmocka_unit_test(when),
+        cmocka_unit_test(stable),
+        cmocka_unit_test(water),
+        cmocka_unit_test(box),
+        cmocka_unit_test(facing),
+        cmocka_unit_test(strict),
+        cmocka_unit_test(a_dozen),
     };
     return cmocka_run_group_tests_name("import/road_lamps", tests, start, finish);
 }

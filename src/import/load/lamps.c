@@ -143,7 +143,6 @@ typedef struct lamp_fate {
 static void stand_inferred(importer *im, pending_lamp *p, const city_lamp_params *params) {
     city_lamp_params untold = *params;
     untold.tally = NULL; /* of surveyed lamps alone, as are the report's issues */
-    road_lamps_raise(im, p);
     geo_lamp lamp = p->lamp;
     geo_fitting fitting;
     luminaires_dress(im, NULL, (lamp_roads){ p->along, p->along }, &lamp, &fitting);
@@ -419,6 +418,8 @@ static noc_status finish_lamps(importer *im) {
         status = ask_roads(im);
     if (!status)
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
+    if (!status)
+        status = road_lamps_raise(im);
     if (!status)
         status = roads_pave(im); /* lamps stand on them */
     if (!status)

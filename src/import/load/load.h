@@ -476,8 +476,9 @@ noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 void road_lamps_face(importer *im, const struct city_roads *roads);
 /* Roads that a lamp at a place stands beside, where that is asked for. */
 lamp_roads road_lamps_near(const importer *im, const double xy[2]);
-/* One on a bridge stands on the line between the ground at its ends. */
-void road_lamps_raise(const importer *im, pending_lamp *p);
+/* Lamps on bridges of maps stand on the line between the ground at their ends, which must be there, and no roads on it.
+ */
+noc_status road_lamps_raise(importer *im);
 
 /* cars.c: tracks of cars, and what cars look like. */
 noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track);

@@ -122,15 +122,64 @@ lamp_roads road_lamps_near(const importer *im, const double xy[2]) {
     return roads ? (lamp_roads){ city_roads_street(roads, xy), city_roads_beside(roads, xy, NULL) } : (lamp_roads){ 0 };
 }
 
-void road_lamps_raise(const importer *im, pending_lamp *p) {
-    const geo_road *road = p->along;
-    const double *a = road->xyz, *b = a + 3 * (road->point_count - 1), *at = p->lamp.xyz;
+/* ---- bridges ---- */
+
+#define KERB 3.0   /* m beside the carriageway of a bridge that are its pavement */
+#define OFF 3.0    /* m between a lamp's elevation and the deck that it stands on */
+#define RAISED 1.0 /* m between a deck and the ground that make a difference */
+
+/* m from the middle of the road to a place. */
+static double distance_to(const geo_road *road, const double xy[2]) {
+    double nearest = INFINITY;
+    for (size_t i = 0; i + 1 < road->point_count; i++) {
+        const double *a = road->xyz + 3 * i, *b = a + 3;
+        double d[2] = { b[0] - a[0], b[1] - a[1] }, length2 = d[0] * d[0] + d[1] * d[1];
+        double t = length2 > 0 ? ((xy[0] - a[0]) * d[0] + (xy[1] - a[1]) * d[1]) / length2 : 0;
+        t = NOC_CLAMP(t, 0, 1);
+        nearest = NOC_MIN(nearest, hypot(a[0] + t * d[0] - xy[0], a[1] + t * d[1] - xy[1]));
+    }
+    return nearest;
+}
+
+/* Height of a bridge's deck at a place: on the line between the ground at its ends. False: it is nowhere above the
+ * ground there. */
+static bool deck_at(const importer *im, const geo_road *road, const double xy[2], double *deck) {
+    const double *a = road->xyz, *b = road->xyz + 3 * (road->point_count - 1);
     double low, from, to;
-    if (!road->bridge || !noc_scene_ground(im->scene, at[0], at[1], &low) ||
-        !noc_scene_ground(im->scene, a[0], a[1], &from) || !noc_scene_ground(im->scene, b[0], b[1], &to))
+    if (!noc_scene_ground(im->scene, xy[0], xy[1], &low) || !noc_scene_ground(im->scene, a[0], a[1], &from) ||
+        !noc_scene_ground(im->scene, b[0], b[1], &to))
+        return false;
+    double before = hypot(xy[0] - a[0], xy[1] - a[1]), behind = hypot(xy[0] - b[0], xy[1] - b[1]);
+    *deck = from + (to - from) * before / NOC_MAX(before + behind, 1e-9);
+    return *deck > low + RAISED;
+}
+
+static void raise(importer *im, const city_roads *roads, pending_lamp *p) {
+    geo_lamp *lamp = &p->lamp;
+    const geo_road *road = p->along ? p->along : city_roads_beside(roads, lamp->xyz, NULL);
+    double deck;
+    if (!road || !road->bridge || lamp->body_heads)
         return;
-    double before = hypot(at[0] - a[0], at[1] - a[1]), behind = hypot(at[0] - b[0], at[1] - b[1]);
-    double deck = from + (to - from) * before / (before + behind);
-    if (deck > low + 1)
-        p->lamp.xyz[2] = deck;
+    bool on = p->along || distance_to(road, lamp->xyz) <= geo_road_width(road) / 2 + KERB;
+    if (!on || !deck_at(im, road, lamp->xyz, &deck) || fabs(lamp->xyz[2] - deck) > OFF)
+        return;
+    lamp->xyz[2] = deck;
+    lamp->on_deck = true;
+    if (!p->along)
+        geo_issue(im->inputs[p->input].issues, GEO_GUESSED, "lamp on a bridge of a map: put on its deck", lamp->id);
+}
+
+noc_status road_lamps_raise(importer *im) {
+    city_roads *own = NULL;
+    bool bridges = false;
+    for (size_t i = 0; i < im->roads.len && !bridges; i++)
+        bridges = im->roads.data[i].bridge;
+    if (!bridges || !im->lamps.len)
+        return NOC_OK;
+    if (!im->roads_by_place && !(own = city_roads_create(im->roads.data, im->roads.len)))
+        return noc_no_memory(im->log, "import");
+    for (size_t i = 0; i < im->lamps.len; i++)
+        raise(im, own ? own : im->roads_by_place, &im->lamps.data[i]);
+    city_roads_destroy(own);
+    return NOC_OK;
 }
