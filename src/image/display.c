@@ -13,7 +13,7 @@
  * Pixels of the emitter mask do not count, unless nothing else is lit. Of a picture without a mask the brightest
  *      METER_TRIM of the lit cells are left out: emitters, glare.
  *   2. The lit cells are ranked. The one that METER_BRIGHT of them stay under is shown at METER_BRIGHT_AT of white, as
- * far as a street is lit, that is the lit road.
+ * far as a street is lit, that is the lit road: a stop over mid-grey, as photographers have it (docs/defaults.md).
  *   3. Seen from afar, lamps light a hundredth of a picture, and rank METER_BRIGHT lies in the dark between them. The
  * cell at METER_PEAK, then the middle of a lamp's pool, is never shown above METER_PEAK_AT of white: the tone map takes
  * that just before it burns. This is the floor of the exposure. Ranks scale with the picture: 2^k times the light is k
@@ -21,7 +21,7 @@
 #define METER_CELLS 256
 #define METER_TRIM 0.08
 #define METER_BRIGHT 0.95
-#define METER_BRIGHT_AT 0.54
+#define METER_BRIGHT_AT 0.27
 #define METER_PEAK 0.9995
 #define METER_PEAK_AT 3.5
 #define METER_BLACK 3.0
