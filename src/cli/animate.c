@@ -372,7 +372,7 @@ static noc_status meter(animation *a) {
         status = go_to(a, noc_camera_path_seconds(a->path) * (i + 0.5) / METERED);
         for (int k = 0; k < METERED_FRAMES && !status; k++) {
             cli_progress_show((double)i / METERED, -1, "exposure");
-            status = cli_interrupted() ? NOC_ERR_CANCELLED : noc_view_render(view, &job->camera, &p, NULL);
+            status = noc_view_render(view, &job->camera, &p, &(noc_progress){ cli_goes_on, NULL });
         }
         noc_image *image = status ? NULL : noc_view_image(view);
         if (!status && !image)

@@ -264,7 +264,8 @@ static noc_status count_surfaces(const bench *b, const noc_camera *camera, size_
     p.sky = 0;
     p.aovs = 1u << NOC_AOV_DEPTH;
     noc_view *view = noc_view_create(b->device, b->scene);
-    noc_status status = view ? noc_view_render(view, camera, &p, NULL) : NOC_ERR_MEMORY;
+    const noc_progress progress = { cli_goes_on, NULL };
+    noc_status status = view ? noc_view_render(view, camera, &p, &progress) : NOC_ERR_MEMORY;
     noc_channel *depth = status ? NULL : noc_view_aov(view, NOC_AOV_DEPTH);
     *count = 0;
     for (size_t i = 0; depth && i < (size_t)depth->width * (size_t)depth->height; i++)

@@ -108,6 +108,8 @@ void cli_progress_start(bool quiet);
 void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4);
 void cli_progress_clear(void);
 bool cli_load_progress(void *user, const char *what, double done); /* for noc_progress; cancels when interrupted */
+/* Shows nothing; false once a signal has come. A noc_progress.update, as the one above. */
+bool cli_goes_on(void *user, const char *what, double done);
 void cli_catch_signals(void); /* the first signal is remembered, the second ends the program */
 /* While there is nothing, an interruption is not waited on: half a second later the program ends. False when it starts.
  */

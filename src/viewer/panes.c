@@ -156,14 +156,14 @@ static bool is_reference(const panes *p, int which) {
 
 /* ---- frames ---- */
 
-noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int height) {
+noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int height, const noc_progress *progress) {
     pane *to = &p->pane[0];
     noc_render_params params = noc_render_default_params();
     params.width = width;
     params.height = height;
     params.method = NOC_METHOD_HEADLIGHT;
     uint64_t world = world_published(p->world);
-    noc_status status = noc_view_render(to->view, camera, &params, NULL);
+    noc_status status = noc_view_render(to->view, camera, &params, progress);
     noc_view_get_stats(to->view, &to->stats);
     to->method = params.method;
     to->world = world;

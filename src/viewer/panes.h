@@ -60,7 +60,7 @@ bool panes_set(panes *p, int which, const char *name, const char *value, panes_n
 
 /* Renders a frame of a pane. */
 /* A quick picture by a headlight, for which nothing of the lights is made: what is seen before their structures are. */
-noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int height);
+noc_status panes_headlight(panes *p, const noc_camera *camera, int width, int height, const noc_progress *progress);
 noc_status panes_render(panes *p, int which, const noc_camera *camera, int width, int height, bool rests,
                         const noc_progress *progress);
 

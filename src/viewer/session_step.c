@@ -96,7 +96,7 @@ static void show_headlight(session *s) {
     if (atomic_load(s->setup->lit) || s->panes.pane[0].look.show)
         return;
     double exposure = s->panes.exposure;
-    if (!panes_headlight(&s->panes, &s->mover.camera, w, h))
+    if (!panes_headlight(&s->panes, &s->mover.camera, w, h, &(noc_progress){ not_ended, s }))
         publish(s, 0, true, false);
     s->panes.exposure = exposure; /* it has one of its own */
 }
