@@ -183,6 +183,12 @@ typedef struct noc_region_params {
 NOC_API noc_region *noc_region_find(noc_view *view, const noc_scene *scene, const char *text,
                                     const noc_region_params *params, noc_log *log);
 
+/* Why a luxmeter at that place, local metres, is dark: text gets "inside a lamp's pole or head", "inside a building,
+ * ID", "below the ground by 0.3 m", ..., or "" where it lies in the open. Bodies whose faces do not look outwards are
+ * not known. A few rays, by the view's thread (noc_view_cast). */
+NOC_API noc_status noc_view_buried(noc_view *view, const noc_scene *scene, const double place[3], char *text,
+                                   size_t size);
+
 /* ---- rankings ---- */
 
 typedef struct noc_estimate {
@@ -193,7 +199,7 @@ typedef struct noc_estimate {
 typedef struct noc_influence_row {
     noc_emitter emitter;
     noc_estimate lux;   /* illuminance at the point, or mean over the region */
-    noc_estimate share; /* of all, the sky's too: 0..1 */
+    noc_estimate share; /* of all, the sky's too: 0..1; NaN: of no light */
     double distance;    /* m, from the region's centre to the emitter's */
 } noc_influence_row;
 
@@ -276,12 +282,12 @@ NOC_API noc_status noc_ranking_get_classes(noc_ranking *ranking, noc_influence_c
 
 /* These rows, then what the kinds of emitters bring (lamps first, then windows), the sky, the sum and what classes of
  * surfaces get (if there are any: m2 of them and of all, too), as CSV with a head of names: what nocturne influence
- * --csv writes. Places are in the scene's CRS, which the column crs names, local metres where it has none; the report,
- * which may be NULL, tells of lamps. free() it. NULL: no memory, or a pointer that should not be NULL, which is
- * reported. */
+ * --csv writes, with the region's text in the column region (NULL: ""). Places are in the scene's CRS, which the column
+ * crs names, local metres where it has none; the report, which may be NULL, tells of lamps. free() it. NULL: no memory,
+ * or a pointer that should not be NULL, which is reported. */
 NOC_API char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows,
                                 size_t count, const noc_influence_sum *sum, const noc_influence_class *classes,
-                                size_t class_count);
+                                size_t class_count, const char *region);
 
 #ifdef __cplusplus
 }

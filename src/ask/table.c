@@ -27,16 +27,17 @@ static void csv_number(FILE *out, double v, int decimals) {
         fprintf(out, ",%.*f", decimals, v);
 }
 
-/* The last column: what the scene's lamps give of their flux. */
-static void csv_end(FILE *out, const noc_scene *scene) {
+/* The last columns: what the scene's lamps give of their flux, and what was asked about. */
+static void csv_end(FILE *out, const noc_scene *scene, const char *region) {
     noc_scene_info info;
     noc_scene_get_info(scene, &info);
     csv_number(out, info.maintenance, -1);
+    csv_text(out, region);
     putc('\n', out);
 }
 
 static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report, const noc_influence_row *row,
-                    size_t rank) {
+                    size_t rank, const char *region) {
     const noc_emitter *e = &row->emitter;
     const noc_report_lamp *lamp = noc_report_find_lamp(report, e->light);
     noc_scene_info info;
@@ -63,14 +64,14 @@ static void csv_row(FILE *out, const noc_scene *scene, const noc_report *report,
     putc(',', out);
     csv_text(out, info.given_crs);
     fputs(",,,,", out);
-    csv_end(out, scene);
+    csv_end(out, scene, region);
 }
 
 #define NO_ESTIMATE ((noc_estimate){ NAN, NAN })
 
 /* A line of a sum. area: of the surfaces that get it, m2; NaN: none. parts: by lamps and by windows; NULL: none. */
 static void csv_sum(FILE *out, const noc_scene *scene, const char *name, const char *kind, noc_estimate lux,
-                    noc_estimate share, double area, const noc_estimate parts[2]) {
+                    noc_estimate share, double area, const noc_estimate parts[2], const char *region) {
     const double numbers[] = { lux.value, lux.error, share.value, share.error };
     fprintf(out, ",\"%s\",\"%s\",\"\"", name, kind);
     for (int k = 0; k < 4; k++)
@@ -82,19 +83,20 @@ static void csv_sum(FILE *out, const noc_scene *scene, const char *name, const c
         csv_number(out, parts ? parts[k].value : NAN, -1);
         csv_number(out, parts ? parts[k].error : NAN, -1);
     }
-    csv_end(out, scene);
+    csv_end(out, scene, region);
 }
 
 /* Lamps and windows in any case, the first two; of other kinds those that bring anything. */
-static void csv_kinds(FILE *out, const noc_scene *scene, const noc_influence_sum *sum) {
+static void csv_kinds(FILE *out, const noc_scene *scene, const noc_influence_sum *sum, const char *region) {
     for (int k = 0; k < NOC_EMITTER_KIND_COUNT; k++)
         if (k <= NOC_EMITTER_WINDOW || sum->kinds[k].emitters)
             csv_sum(out, scene, noc_emitter_kind_name((noc_emitter_kind)k), "kind", sum->kinds[k].lux,
-                    sum->kinds[k].share, NAN, NULL);
+                    sum->kinds[k].share, NAN, NULL, region);
 }
 
 char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const noc_influence_row *rows, size_t count,
-                        const noc_influence_sum *sum, const noc_influence_class *classes, size_t class_count) {
+                        const noc_influence_sum *sum, const noc_influence_class *classes, size_t class_count,
+                        const char *region) {
     char *text = NULL;
     size_t size;
     double area = class_count ? 0 : NAN;
@@ -102,25 +104,26 @@ char *noc_influence_csv(const noc_scene *scene, const noc_report *report, const 
         noc_null(NULL, __func__);
         return NULL;
     }
+    region = region ? region : "";
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
     fputs("rank,name,kind,of,lux,lux_error,share,share_error,x,y,z,distance,lumens,kelvin,placed,street,file,profile,"
           "area,crs,lamps_lux,lamps_lux_error,windows_lux,windows_lux_error,"
-          "maintenance\n",
+          "maintenance,region\n",
           out);
     for (size_t i = 0; i < count; i++)
-        csv_row(out, scene, report, &rows[i], i + 1);
+        csv_row(out, scene, report, &rows[i], i + 1, region);
     for (size_t i = 0; i < class_count; i++)
         area += classes[i].weight;
-    csv_kinds(out, scene, sum);
-    csv_sum(out, scene, "", "sky", sum->sky, sum->sky_share, NAN, NULL);
+    csv_kinds(out, scene, sum, region);
+    csv_sum(out, scene, "", "sky", sum->sky, sum->sky_share, NAN, NULL, region);
     csv_sum(out, scene, sum->windows_counted ? "windows counted" : "without windows", "all", sum->lux,
-            (noc_estimate){ 1, 0 }, area,
-            (const noc_estimate[]){ sum->kinds[NOC_EMITTER_LAMP].lux, sum->kinds[NOC_EMITTER_WINDOW].lux });
+            sum->lux.value > 0 ? (noc_estimate){ 1, 0 } : NO_ESTIMATE, area,
+            (const noc_estimate[]){ sum->kinds[NOC_EMITTER_LAMP].lux, sum->kinds[NOC_EMITTER_WINDOW].lux }, region);
     for (size_t i = 0; i < class_count; i++)
         csv_sum(out, scene, noc_class_name(classes[i].cls), "class", classes[i].lux, NO_ESTIMATE, classes[i].weight,
-                (const noc_estimate[]){ classes[i].lamps, classes[i].windows });
+                (const noc_estimate[]){ classes[i].lamps, classes[i].windows }, region);
     bool bad = ferror(out);
     if (fclose(out) || bad) {
         free(text);

@@ -71,8 +71,8 @@ static int check_regions(const influence_args *args) {
     if (!count == !args->lamp)
         return args->lamp ? cli_usage(&cli_influence, "--region and --lamp exclude each other")
                           : cli_usage(&cli_influence, "--region is needed, point:X,Y, for one; or --lamp");
-    if (args->csv && count != 1)
-        return cli_usage(&cli_influence, args->lamp ? "--csv is for --region" : "--csv is for one --region");
+    if (args->csv && args->lamp)
+        return cli_usage(&cli_influence, "--csv is for --region");
     for (size_t i = 0; args->classes && i < count + !count; i++)
         if (args->lamp || strncmp(args->regions.text[i], "object:", 7) != 0)
             return cli_usage(&cli_influence, "--class is for --region object:ID");
@@ -106,10 +106,23 @@ static bool show(void *user, const char *what, double done) {
 }
 
 /* The seen luminance is told of pixels alone: a point is seen by nobody. */
-static bool has_eye(const char *region) { return !strncmp(region, "pixel:", 6) || !strncmp(region, "rect:", 5); }
+bool influence_has_eye(const char *region) { return !strncmp(region, "pixel:", 6) || !strncmp(region, "rect:", 5); }
 
 /* Parts of the others weigh as much as their areas. */
-static bool has_area(const char *region) { return !has_eye(region) && strncmp(region, "point:", 6) != 0; }
+static bool has_area(const char *region) { return !influence_has_eye(region) && strncmp(region, "point:", 6) != 0; }
+
+/* A place in a body or in the ground is dark, which its answer says, but for a CSV's. */
+static void tell_buried(influence_job *job) {
+    const noc_region_info *r = &job->region_info;
+    *job->buried = 0;
+    bool place = !strncmp(job->asked, "point:", 6);
+    if (place && !noc_view_buried(job->view, job->scene, r->centre, job->buried, sizeof(job->buried)) && *job->buried &&
+        job->args->csv) {
+        char *text = cli_format("%.200s lies %s", job->asked, job->buried);
+        cli_log_message(NULL, NOC_LOG_WARN, text);
+        free(text);
+    }
+}
 
 static noc_status ask_region(influence_job *job) {
     influence_args *args = job->args;
@@ -119,7 +132,8 @@ static noc_status ask_region(influence_job *job) {
                              .height = render->render.height,
                              .classes = args->class_bits,
                              .files = true };
-    noc_ranking_params params = { &render->render, has_eye(job->asked) ? job->camera.eye : NULL, args->count_windows };
+    noc_ranking_params params = { &render->render, influence_has_eye(job->asked) ? job->camera.eye : NULL,
+                                  args->count_windows };
     noc_ranking_target target = { .seconds = args->time, .error = args->error };
     noc_progress progress = { show, job };
     job->region = noc_region_find(job->view, job->scene, job->asked, &of, job->log);
@@ -127,6 +141,7 @@ static noc_status ask_region(influence_job *job) {
     if (!ranking)
         return NOC_ERR_ARGUMENT;
     noc_region_get_info(job->region, &job->region_info);
+    tell_buried(job);
     noc_status status = noc_ranking_refine(ranking, &target, &progress);
     cli_progress_clear();
     job->rows = cli_alloc((size_t)args->top * sizeof(*job->rows));
@@ -142,7 +157,7 @@ static noc_status ask_region(influence_job *job) {
         free(job->rows);
         job->rows = cli_alloc((job->sum.emitters + 1) * sizeof(*job->rows));
         status = noc_ranking_get(ranking, job->rows, job->sum.emitters, &job->count, &job->sum);
-        status = status ? status : influence_write_csv(job);
+        status = status ? status : influence_add_csv(job);
     }
     noc_ranking_destroy(ranking);
     return status;
@@ -165,6 +180,8 @@ static noc_status ask(influence_job *job) {
     }
     if (array && *job->lead == ',')
         puts("]");
+    status = status || !args->csv ? status : influence_write_csv(job);
+    free(job->csv);
     return status;
 }
 

@@ -34,7 +34,11 @@ typedef struct influence_job {
     noc_influence_sum sum;
     noc_influence_class classes[NOC_CLASS_COUNT]; /* where the region is one of areas */
     size_t class_count;
+    char buried[128]; /* why a point is dark; "": it lies in the open */
+    char *csv;        /* of the regions until now; NULL: none yet */
 } influence_job;
+
+bool influence_has_eye(const char *region);
 
 /* influence_lamp.c: --lamp */
 noc_status influence_tell_lamp(influence_job *job);
@@ -44,6 +48,7 @@ void influence_print_maintenance(const influence_job *job); /* a line, where it 
 void influence_json_tags(const char *tags);
 noc_status influence_print(influence_job *job);       /* the table, or JSON */
 bool influence_csv_alone(const influence_args *args); /* in place of the table: --csv - */
-noc_status influence_write_csv(influence_job *job);
+noc_status influence_add_csv(influence_job *job);     /* the region's rows to job->csv */
+noc_status influence_write_csv(influence_job *job);   /* all of them, to where it is asked for */
 
 #endif

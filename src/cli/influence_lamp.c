@@ -130,7 +130,7 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
            r->emitter.light, r->emitter.light_count);
     json_place(job, "at", r->emitter.centre);
     json_value("lumens", r->emitter.lumens);
-    json_value("kelvin", r->emitter.kelvin);
+    json_value("kelvin", round(r->emitter.kelvin));
     json_value("maintenance", job->info.maintenance);
     json_value("watts", lamp ? lamp->watts : NAN);
     json_value("height", lamp ? lamp->height : NAN);

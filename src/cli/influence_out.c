@@ -144,6 +144,8 @@ static noc_status print_table(influence_job *job) {
     noc_text_clean(region, sizeof(region), job->asked);
     printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
            *job->info.given_crs ? job->info.given_crs : "local metres");
+    if (*job->buried)
+        printf("it lies %s: a luxmeter there is dark\n", job->buried);
     print_parts(job);
     if (s->luminance.value > 0)
         printf("%s cd/m2 ± %.2g towards the camera of this, without what shines itself\n",
@@ -223,7 +225,7 @@ static void json_row(const influence_job *job, const noc_influence_row *row) {
     json_number("z", t.at[2]);
     json_number("distance", row->distance);
     json_number("lumens", e->lumens);
-    json_number("kelvin", e->kelvin);
+    json_number("kelvin", round(e->kelvin));
     json_text("placed", e->inferred ? "inferred" : t.lamp ? "mapped" : "");
     json_text("street", t.lamp ? t.lamp->street : "");
     json_text("file", t.lamp ? t.lamp->file : "");
@@ -250,6 +252,8 @@ static noc_status print_json(influence_job *job) {
     printf("{\"nocturne\": \"%s\", \"region\": ", noc_version());
     cli_json_text(stdout, job->asked);
     json_text("crs", job->info.given_crs);
+    printf(", \"note\": ");
+    cli_json_text(stdout, *job->buried ? job->buried : NULL);
     printf(",\n ");
     json_estimate("lamps", s->kinds[NOC_EMITTER_LAMP].lux);
     printf(",\n ");
@@ -266,7 +270,9 @@ static noc_status print_json(influence_job *job) {
     printf(", ");
     json_estimate("rest_share", s->rest_share);
     printf(",\n ");
-    json_estimate("luminance", s->luminance);
+    json_estimate("luminance", influence_has_eye(job->asked)
+                                   ? s->luminance
+                                   : (noc_estimate){ NAN, NAN }); /* of a place there is none */
     json_number("lights", (double)s->emitters);
     json_number("samples", (double)s->samples);
     json_number("rays", (double)s->rays);
@@ -299,16 +305,23 @@ noc_status influence_print(influence_job *job) { return job->args->json ? print_
 
 bool influence_csv_alone(const influence_args *args) { return args->csv && !strcmp(args->csv, "-"); }
 
-noc_status influence_write_csv(influence_job *job) {
-    noc_status status = NOC_OK;
-    char *text =
-        noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum, job->classes, job->class_count);
+/* One head of names, before the first region's rows. */
+noc_status influence_add_csv(influence_job *job) {
+    char *text = noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum, job->classes,
+                                   job->class_count, job->asked);
     if (!text)
         cli_no_memory();
-    if (influence_csv_alone(job->args))
-        fputs(text, stdout); /* which is looked at in the end */
-    else
-        status = noc_text_save(job->args->csv, text, strlen(text), job->log);
+    char *before = job->csv, *rows = before ? strchr(text, '\n') + 1 : text;
+    job->csv = cli_format("%s%s", before ? before : "", rows);
+    free(before);
     free(text);
-    return status;
+    return NOC_OK;
+}
+
+noc_status influence_write_csv(influence_job *job) {
+    if (influence_csv_alone(job->args)) {
+        fputs(job->csv, stdout); /* which is looked at in the end */
+        return NOC_OK;
+    }
+    return noc_text_save(job->args->csv, job->csv, strlen(job->csv), job->log);
 }

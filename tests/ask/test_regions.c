@@ -265,6 +265,46 @@ static void streets_are_found_as_people_spell_them(void **state) {
     }
 }
 
+/* A box of 2 m, its lowest corner there, whose faces look outwards. */
+static void box(noc_scene *s, int m, const char *name, double x, double y, double z) {
+    Q(name, m, x, y, z, 0, 2, 0, 2, 0, 0);
+    Q(name, m, x, y, z + 2, 2, 0, 0, 0, 2, 0);
+    Q(name, m, x, y, z, 2, 0, 0, 0, 0, 2);
+    Q(name, m, x, y + 2, z, 0, 0, 2, 2, 0, 0);
+    Q(name, m, x, y, z, 0, 0, 2, 0, 2, 0);
+    Q(name, m, x + 2, y, z, 0, 2, 0, 0, 0, 2);
+}
+
+static void buried_places_say_why(void **state) {
+    const world *w = *state;
+    noc_scene *s = noc_scene_create(w->log);
+    int terrain = of_class(s, NOC_CLASS_TERRAIN), bridge = of_class(s, NOC_CLASS_BRIDGE);
+    Q("ground", terrain, -50, -50, 0, 100, 0, 0, 0, 100, 0);
+    Q("bridge", bridge, -50, -20, 5, 100, 0, 0, 0, 5, 0);
+    box(s, of_class(s, NOC_CLASS_WALL), "house 7", 10, 10, 0);
+    box(s, of_class(s, NOC_CLASS_LAMP), "way/1", 20, 10, 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_view *view = own_view(s, 2, w->log);
+    static const struct {
+        double at[3];
+        const char *says;
+    } places[] = { { { 11, 11, 1 }, "inside a building, house 7" },
+                   { { 11.5, 10.5, 0 }, "inside a building, house 7" },
+                   { { 21, 11, 0 }, "inside a lamp's pole or head" },
+                   { { 0, 0, -0.3 }, "below the ground by 0.3 m" },
+                   { { 0, 0, 0 }, "" },
+                   { { 0, 0, 2 }, "" },
+                   { { 0, -17, 1 }, "" },
+                   { { 11, 11, 3 }, "" } };
+    for (size_t i = 0; i < NOC_COUNT(places); i++) {
+        char text[128];
+        assert_int_equal(noc_view_buried(view, s, places[i].at, text, sizeof(text)), NOC_OK);
+        assert_string_equal(text, places[i].says);
+    }
+    close_view(view);
+    noc_scene_destroy(s);
+}
+
 static void wrong_ones_say_what_is_wrong(void **state) {
     const world *w = *state;
     static const struct {
@@ -365,6 +405,7 @@ int main(void) {
         cmocka_unit_test(ground_is_what_is_seen_from_above),
         cmocka_unit_test(polygons_may_have_many_corners),
         cmocka_unit_test(streets_are_found_as_people_spell_them),
+        cmocka_unit_test(buried_places_say_why),
         cmocka_unit_test(wrong_ones_say_what_is_wrong),
         cmocka_unit_test(files_of_polygons),
         cmocka_unit_test(points_in_another_crs),

@@ -300,8 +300,9 @@ static noc_camera camera;
     P(0, noc_navigator_go(NULL, &camera) == NOC_ERR_ARGUMENT)                                                          \
     P(0, !noc_navigator_look(NULL, (double[3]){ 0 }, 1))                                                               \
     P(0, noc_report_find_lamp(NULL, 0) == NULL)                                                                        \
-    P(0, noc_influence_csv(NULL, NULL, NULL, 0, &(noc_influence_sum){ 0 }, NULL, 0) == NULL)                           \
-    P(0, noc_influence_csv(scene, NULL, NULL, 0, NULL, NULL, 0) == NULL)                                               \
+    P(0, noc_view_buried(NULL, scene, (double[3]){ 0 }, (char[8]){ 0 }, 8) == NOC_ERR_ARGUMENT)                        \
+    P(0, noc_influence_csv(NULL, NULL, NULL, 0, &(noc_influence_sum){ 0 }, NULL, 0, NULL) == NULL)                     \
+    P(0, noc_influence_csv(scene, NULL, NULL, 0, NULL, NULL, 0, NULL) == NULL)                                         \
     P(0, !noc_navigator_jump(NULL, (double[2]){ 0 }, 1))                                                               \
     P(0, noc_camera_align(NULL, 4, 8, 8, NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                               \
     P(0, noc_scene_photo_camera(NULL, "a.csv", NULL, &camera, NULL) == NOC_ERR_ARGUMENT)                               \

@@ -124,7 +124,7 @@ PY
 python3 kept.py
 result $? "a maintenance factor scales lamps alone"
 ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q '^lamps give 0.8 of their flux' out &&
-    head -n 1 kept.csv | grep -q ',maintenance$' && [ "$(grep -c ',0.8$' kept.csv)" = 7 ]
+    head -n 1 kept.csv | grep -q ',maintenance,region$' && [ "$(grep -c ',0.8,"street:Well Lane"$' kept.csv)" = 7 ]
 result $? "and each answer says so"
 run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 && head -n 1 out >place1
 run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 --maintenance 0.3 &&
@@ -175,8 +175,33 @@ with open('out') as f:
     assert len(json.load(f)) == 1
 "
 result $? "of those before one that cannot be answered"
-expect "a table of two regions" 2 'csv is for one --region' influence map.osm --csv x.csv \
-    --region point:0,0 --region point:1,1
+run influence map.osm --map-surfaces -q --csv two.csv --region point:13.4003,52.50000,EPSG:4326 \
+    --region "street:Well Lane" && [ "$(grep -c '^rank,' two.csv)" = 1 ] && python3 -c "
+import csv
+rows = list(csv.DictReader(open('two.csv')))
+both = {r['region'] for r in rows}
+assert both == {'point:13.4003,52.50000,EPSG:4326', 'street:Well Lane'}, both
+assert [r['region'][:6] for r in rows if r['kind'] == 'all'] == ['point:', 'street'], rows
+"
+result $? "two regions in CSV are told apart by a column"
+
+# A place that is dark says why; shares of no light, and the luminance of a place, are none.
+run influence builtin:city -q --region point:10,10,-0.3 --csv dark.csv --sky 0 && grep -q 'below the ground by 0.4 m' out &&
+    python3 -c "
+import csv
+all = [r for r in csv.DictReader(open('dark.csv')) if r['kind'] == 'all'][0]
+assert float(all['lux']) == 0 and all['share'] == '', all
+"
+result $? "below the ground it is dark, which the answer says"
+run influence builtin:city -q --region point:10,10,-0.3 --region point:0,0 --region pixel:640,500 --time .1 --json &&
+    python3 -c "
+import json
+dark, lit, seen = json.load(open('out'))
+assert dark['note'].startswith('below the ground') and dark['lux'] == 0 and dark['sky_share'] is None, dark
+assert lit['note'] == '' and lit['luminance'] is None and lit['luminance_error'] is None, lit
+assert seen['luminance'] > 0 and all(r['kelvin'] in (None, round(r['kelvin'] or 0)) for r in lit['rows']), seen
+"
+result $? "and JSON, too"
 
 expect "which region?" 2 "region is needed" influence builtin:city
 expect "which city?" 2 "which city" influence --region point:0,0
