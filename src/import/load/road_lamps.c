@@ -154,7 +154,7 @@ static bool deck_at(const importer *im, const geo_road *road, const double xy[2]
     return *deck > low + RAISED;
 }
 
-static void raise(importer *im, const city_roads *roads, pending_lamp *p) {
+static void put_on_deck(importer *im, const city_roads *roads, pending_lamp *p) {
     geo_lamp *lamp = &p->lamp;
     const geo_road *road = p->along ? p->along : city_roads_beside(roads, lamp->xyz, NULL);
     double deck;
@@ -179,7 +179,7 @@ noc_status road_lamps_raise(importer *im) {
     if (!im->roads_by_place && !(own = city_roads_create(im->roads.data, im->roads.len)))
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->lamps.len; i++)
-        raise(im, own ? own : im->roads_by_place, &im->lamps.data[i]);
+        put_on_deck(im, own ? own : im->roads_by_place, &im->lamps.data[i]);
     city_roads_destroy(own);
     return NOC_OK;
 }
