@@ -116,7 +116,8 @@ static void print_kinds(const noc_influence_sum *s) {
 
 void influence_print_maintenance(const influence_job *job) {
     if (job->info.maintenance != 1)
-        printf("lamps give %g of their flux (--maintenance)\n", job->info.maintenance);
+        printf("lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
+               job->info.maintenance);
 }
 
 /* Lamps first, windows beside them, then the sum of what counts. */

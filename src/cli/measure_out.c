@@ -66,7 +66,8 @@ static void print_text(measure_job *job, const told *t) {
                noc_text_count(count, t->info.short_of_it), 100 * job->params.error);
     }
     if (job->info.maintenance != 1)
-        printf("  lamps give %g of their flux (--maintenance)\n", job->info.maintenance);
+        printf("  lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
+               job->info.maintenance);
     printf("  windows %s\n", job->args->count_windows ? "count" : "are dark (--count-windows)");
 }
 

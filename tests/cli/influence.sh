@@ -123,7 +123,7 @@ assert near(b['windows'], a['windows'], .06), (a['windows'], b['windows'])
 PY
 python3 kept.py
 result $? "a maintenance factor scales lamps alone"
-ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q '^lamps give 0.8 of their flux' out &&
+ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q '^lamps give 0.8 of their flux (--maintenance); meshes that shine, windows and cars all of theirs$' out &&
     head -n 1 kept.csv | grep -q ',maintenance,region$' && [ "$(grep -c ',0.8,"street:Well Lane"$' kept.csv)" = 7 ]
 result $? "and each answer says so"
 run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 && head -n 1 out >place1
