@@ -1,5 +1,5 @@
 /* Windows on walls: what is merged, what is left out, and that no window leaves its wall. */
-#include "city/windows/windows.h"
+#include "city/windows/parts.h"
 #include "../test.h"
 
 #include <math.h>
@@ -433,6 +433,43 @@ static void test_luminances(void **state) {
     assert_true(n > 100 && y[n / 2] > 16 && y[n / 2] < 64);
 }
 
+/* Triangles for facets, and how many pairs of them are looked at until those are found. */
+static size_t looked_at(const wall_triangle *t, size_t count, size_t facets) {
+    wall_facets f = { 0 };
+    assert_true(wall_facets_find(t, count, &f));
+    size_t looked = f.looked_at;
+    print_message("# %zu triangles, %zu facets: %zu pairs\n", count, f.facets.len, looked);
+    assert_int_equal(f.facets.len, facets);
+    assert_int_equal(f.by_facet.len, count);
+    wall_facets_free(&f);
+    return looked;
+}
+
+enum { MANY = 6000 };
+
+static void set_triangle(wall_triangle *t, const double a[3], const double b[3], const double c[3]) {
+    memcpy(t->p[0], a, sizeof(t->p[0]));
+    memcpy(t->p[1], b, sizeof(t->p[1]));
+    memcpy(t->p[2], c, sizeof(t->p[2]));
+}
+
+/* A wall of many pieces is found at a cost a piece: walls that stand across one place, that lie on one another, and
+ * that stand side by side. */
+static void test_many_pieces(void **state) {
+    (void)state;
+    static wall_triangle star[MANY], stack[MANY], row[MANY];
+    for (int i = 0; i < MANY; i++) {
+        double angle = 2 * M_PI * i / MANY, c = cos(angle), s = sin(angle), x = .001 * i;
+        set_triangle(&star[i], (double[]){ 500 * c, 500 * s, 0 }, (double[]){ 1000 * c, 1000 * s, 0 },
+                     (double[]){ 1000 * c, 1000 * s, 10 });
+        set_triangle(&stack[i], (double[]){ x, 0, 0 }, (double[]){ x + 50, 0, 0 }, (double[]){ x + 50, 0, 50 });
+        set_triangle(&row[i], (double[]){ 2 * i, 0, 0 }, (double[]){ 2 * i + 1, 0, 0 }, (double[]){ 2 * i + 1, 0, 9 });
+    }
+    assert_true(looked_at(star, MANY, MANY) < 40 * MANY);
+    assert_true(looked_at(stack, MANY, 1) < 40 * MANY);
+    assert_true(looked_at(row, MANY, MANY) < 40 * MANY);
+}
+
 static void test_no_memory(void **state) {
     (void)state;
     walls w;
@@ -453,10 +490,11 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),   cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
-        cmocka_unit_test(test_uses),   cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
-        cmocka_unit_test(test_levels), cmocka_unit_test(test_luminances), cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_grid),      cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
+        cmocka_unit_test(test_shapes),    cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
+        cmocka_unit_test(test_uses),      cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_levels),    cmocka_unit_test(test_luminances), cmocka_unit_test(test_many_pieces),
+        cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -122,42 +122,6 @@ static bool touch(const wall_piece *a, const wall_piece *b, const wall_plane *of
     return !apart(p, q);
 }
 
-/* Which pieces touch which: pairs, found by a sweep along the longer level axis. */
-typedef struct pair {
-    uint32_t a, b;
-} pair;
-typedef struct pairs {
-    NOC_ARRAY(pair) list;
-    uint32_t *first, *next_to; /* of each piece: its neighbours are next_to[first[i]] to next_to[first[i + 1]] */
-} pairs;
-
-/* Of a piece's box, across the sweep and up: the least coordinates, and the greatest with their signs turned. Rounded
- * outwards, so that the sweep, which reads these alone, passes none over that boxes_touch would keep. */
-typedef float sweep_box __attribute__((vector_size(16)));
-typedef int64_t sweep_mask __attribute__((vector_size(16)));
-#define OUTWARDS 1e-6 /* of the size of a coordinate, and more than floats lose */
-
-typedef struct sweep_item {
-    sweep_box box;
-    double lo, hi; /* along the sweep */
-    uint32_t piece;
-} sweep_item;
-
-static int compare_items(const void *a, const void *b) {
-    const sweep_item *x = a, *y = b;
-    if (x->lo != y->lo)
-        return x->lo < y->lo ? -1 : 1;
-    return (x->piece > y->piece) - (x->piece < y->piece);
-}
-
-static sweep_item item_of(const wall_piece *p, int axis, size_t piece) {
-    const double least[4] = { p->lo[!axis], p->lo[2], -p->hi[!axis], -p->hi[2] };
-    sweep_item item = { .lo = p->lo[axis], .hi = p->hi[axis], .piece = (uint32_t)piece };
-    for (int k = 0; k < 4; k++)
-        item.box[k] = (float)(least[k] - OUTWARDS * fabs(least[k]));
-    return item;
-}
-
 static bool boxes_touch(const wall_piece *a, const wall_piece *b) {
     for (int k = 0; k < 3; k++)
         if (a->lo[k] - b->hi[k] > WINDOW_MERGE_MM / 1000 || b->lo[k] - a->hi[k] > WINDOW_MERGE_MM / 1000)
@@ -165,62 +129,77 @@ static bool boxes_touch(const wall_piece *a, const wall_piece *b) {
     return true;
 }
 
-/* Of the item with those that come behind it. planes: of each piece. */
-static bool pairs_of(const wall_facets *f, const sweep_item *item, const sweep_item *end, const wall_plane *planes,
-                     pairs *out) {
-    const float merge = (float)(1.001 * WINDOW_MERGE_MM / 1000);
-    const sweep_box most = { merge - item->box[2], merge - item->box[3], merge - item->box[0], merge - item->box[1] };
-    const wall_piece *a = &f->pieces.data[item->piece];
-    for (const sweep_item *other = item + 1; other < end && other->lo <= item->hi + WINDOW_MERGE_MM / 1000; other++) {
-        sweep_mask far = (sweep_mask)(other->box > most);
-        if (far[0] | far[1])
-            continue;
-        const wall_piece *b = &f->pieces.data[other->piece];
-        if (boxes_touch(a, b) && touch(a, b, &planes[item->piece], &planes[other->piece]) &&
-            !array_push(&out->list, (pair){ item->piece, other->piece }))
-            return false;
-    }
-    return true;
+/* Pieces are taken into a facet in an order of their own: along the longer level axis. */
+typedef struct ordered_piece {
+    double lo;
+    uint32_t piece;
+} ordered_piece;
+
+static int compare_ordered(const void *a, const void *b) {
+    const ordered_piece *x = a, *y = b;
+    if (x->lo != y->lo)
+        return x->lo < y->lo ? -1 : 1;
+    return (x->piece > y->piece) - (x->piece < y->piece);
 }
 
-static bool find_pairs(const wall_facets *f, size_t count, const wall_plane *planes, pairs *out) {
-    sweep_item *items = noc_alloc_large(NOC_MAX(count, 1u), sizeof(*items)); /* aligned */
+/* What facets grow by. */
+typedef struct growth {
+    wall_facets *facets;
+    wall_plane *planes; /* of each piece */
+    uint32_t *rank;     /* of each piece in the order */
+    near_pieces *near;
+    near_found found;
+} growth;
+
+static void free_growth(growth *g) {
+    free(g->planes);
+    free(g->rank);
+    near_pieces_free(g->near);
+    array_free(&g->found);
+}
+
+static bool rank_pieces(const wall_piece *pieces, size_t count, uint32_t *rank) {
+    ordered_piece *items = noc_alloc(NOC_MAX(count, 1u) * sizeof(*items));
     double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
     if (!items)
         return false;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 2; k++) {
-            lo[k] = fmin(lo[k], f->pieces.data[i].lo[k]);
-            hi[k] = fmax(hi[k], f->pieces.data[i].hi[k]);
+            lo[k] = fmin(lo[k], pieces[i].lo[k]);
+            hi[k] = fmax(hi[k], pieces[i].hi[k]);
         }
     int axis = hi[1] - lo[1] > hi[0] - lo[0];
     for (size_t i = 0; i < count; i++)
-        items[i] = item_of(&f->pieces.data[i], axis, i);
-    qsort(items, count, sizeof(*items), compare_items);
-    bool ok = true;
-    for (size_t i = 0; ok && i < count; i++)
-        ok = pairs_of(f, &items[i], items + count, planes, out);
+        items[i] = (ordered_piece){ pieces[i].lo[axis], (uint32_t)i };
+    qsort(items, count, sizeof(*items), compare_ordered);
+    for (size_t i = 0; i < count; i++)
+        rank[items[i].piece] = (uint32_t)i;
     free(items);
-    return ok;
+    return true;
 }
 
-/* From pairs to lists of neighbours. */
-static bool list_neighbours(size_t count, pairs *p) {
-    p->first = noc_calloc(count + 2, sizeof(*p->first));
-    p->next_to = noc_alloc((2 * p->list.len + 1) * sizeof(*p->next_to));
-    if (!p->first || !p->next_to)
+static bool start_growth(growth *g, size_t count) {
+    const wall_piece *pieces = g->facets->pieces.data;
+    g->planes = noc_alloc(NOC_MAX(count, 1u) * sizeof(*g->planes));
+    g->rank = noc_alloc(NOC_MAX(count, 1u) * sizeof(*g->rank));
+    if (!g->planes || !g->rank || !(g->near = near_pieces_make(pieces, count)))
         return false;
-    for (size_t i = 0; i < p->list.len; i++) {
-        p->first[p->list.data[i].a + 2]++;
-        p->first[p->list.data[i].b + 2]++;
-    }
-    for (size_t i = 2; i < count + 2; i++)
-        p->first[i] += p->first[i - 1];
-    for (size_t i = 0; i < p->list.len; i++) {
-        p->next_to[p->first[p->list.data[i].a + 1]++] = p->list.data[i].b;
-        p->next_to[p->first[p->list.data[i].b + 1]++] = p->list.data[i].a;
-    }
-    return true;
+    for (size_t i = 0; i < count; i++)
+        g->planes[i] = wall_plane_make(pieces[i].t.p[0], pieces[i].n);
+    return rank_pieces(pieces, count, g->rank);
+}
+
+static int compare_ranks(const void *a, const void *b, void *ranks) {
+    const uint32_t *rank = ranks, x = rank[*(const uint32_t *)a], y = rank[*(const uint32_t *)b];
+    return (x > y) - (x < y);
+}
+
+/* Of two pieces; the one that comes first in the order is the first. */
+static bool ranked_touch(const growth *g, uint32_t a, uint32_t b) {
+    const wall_piece *pieces = g->facets->pieces.data;
+    uint32_t first = g->rank[a] < g->rank[b] ? a : b, second = first == a ? b : a;
+    return boxes_touch(&pieces[first], &pieces[second]) &&
+           touch(&pieces[first], &pieces[second], &g->planes[first], &g->planes[second]);
 }
 
 /* Plane and extent of a facet whose pieces are known. */
@@ -253,24 +232,42 @@ static void settle_facet(const wall_facets *w, facet *f) {
         }
 }
 
+static bool add_piece(growth *g, uint32_t piece, uint32_t number) {
+    g->facets->pieces.data[piece].facet = number;
+    near_pieces_take(g->near, piece);
+    return array_push(&g->facets->by_facet, piece);
+}
+
+/* What lies in the plane and touches a piece, as far as it has no facet. */
+static bool add_neighbours(growth *g, uint32_t at, const wall_plane *plane, uint32_t number) {
+    const wall_piece *pieces = g->facets->pieces.data;
+    if (!near_pieces_find(g->near, &pieces[at], plane, &g->found))
+        return false;
+    size_t kept = 0;
+    g->facets->looked_at += g->found.len;
+    for (size_t i = 0; i < g->found.len; i++) {
+        uint32_t b = g->found.data[i];
+        if (in_plane(plane, &pieces[b]) && ranked_touch(g, at, b))
+            g->found.data[kept++] = b;
+    }
+    if (kept)
+        qsort_r(g->found.data, kept, sizeof(*g->found.data), compare_ranks, g->rank);
+    bool ok = true;
+    for (size_t i = 0; ok && i < kept; i++)
+        ok = add_piece(g, g->found.data[i], number);
+    return ok;
+}
+
 /* From a piece on all that hangs together in its plane. */
-static bool grow(wall_facets *w, const pairs *p, const wall_plane *plane, uint32_t seed) {
+static bool grow(growth *g, uint32_t seed) {
+    wall_facets *w = g->facets;
     uint32_t number = (uint32_t)w->facets.len;
     facet f = { .first = (uint32_t)w->by_facet.len };
-    w->pieces.data[seed].facet = number;
-    if (!array_push(&w->by_facet, seed))
+    bool ok = add_piece(g, seed, number);
+    for (size_t done = f.first; ok && done < w->by_facet.len; done++)
+        ok = add_neighbours(g, w->by_facet.data[done], &g->planes[seed], number);
+    if (!ok)
         return false;
-    for (size_t done = f.first; done < w->by_facet.len; done++) {
-        uint32_t at = w->by_facet.data[done];
-        for (uint32_t i = p->first[at]; i < p->first[at + 1]; i++) {
-            wall_piece *b = &w->pieces.data[p->next_to[i]];
-            if (b->facet != NO_FACET || !in_plane(plane, b))
-                continue;
-            b->facet = number;
-            if (!array_push(&w->by_facet, p->next_to[i]))
-                return false;
-        }
-    }
     f.count = (uint32_t)w->by_facet.len - f.first;
     settle_facet(w, &f);
     return array_push(&w->facets, f);
@@ -278,8 +275,8 @@ static bool grow(wall_facets *w, const pairs *p, const wall_plane *plane, uint32
 
 bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out) {
     size_t some = 0;
-    pairs p = { 0 };
-    out->pieces.len = out->facets.len = out->by_facet.len = 0;
+    growth g = { .facets = out };
+    out->pieces.len = out->facets.len = out->by_facet.len = out->looked_at = 0;
     if (!array_reserve(&out->pieces, count))
         return false;
     for (size_t i = 0; i < count; i++)
@@ -288,16 +285,10 @@ bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out
         qsort(out->pieces.data, count, sizeof(*out->pieces.data), compare_pieces);
     while (some < count && out->pieces.data[some].area > 1e-6)
         some++;
-    wall_plane *planes = noc_alloc(NOC_MAX(some, 1u) * sizeof(*planes));
-    for (size_t i = 0; planes && i < some; i++)
-        planes[i] = wall_plane_make(out->pieces.data[i].t.p[0], out->pieces.data[i].n);
-    bool ok = planes && find_pairs(out, some, planes, &p) && list_neighbours(some, &p);
+    bool ok = start_growth(&g, some);
     for (size_t i = 0; ok && i < some; i++)
-        ok = out->pieces.data[i].facet != NO_FACET || grow(out, &p, &planes[i], (uint32_t)i);
-    free(planes);
-    array_free(&p.list);
-    free(p.first);
-    free(p.next_to);
+        ok = out->pieces.data[i].facet != NO_FACET || grow(&g, (uint32_t)i);
+    free_growth(&g);
     return ok;
 }
 

@@ -48,6 +48,7 @@ typedef struct wall_facets {
     NOC_ARRAY(wall_piece) pieces;
     NOC_ARRAY(facet) facets;
     NOC_ARRAY(uint32_t) by_facet; /* indices of pieces, facet after facet */
+    size_t looked_at;             /* pairs of pieces, until the facets were found */
 } wall_facets;
 
 /* Around the walls of a building; width: of its widest facet. */
@@ -60,6 +61,18 @@ building_box building_box_of(const wall_facets *f);
 #define NO_FACET UINT32_MAX
 bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out) NOC_MUST_USE; /* false: no memory */
 void wall_facets_free(wall_facets *f);
+
+/* near.c. Of pieces, which stay the caller's and where they are: at first all, none of which has a facet. NULL: no
+ * memory. */
+typedef struct near_pieces near_pieces;
+typedef NOC_ARRAY(uint32_t) near_found;
+near_pieces *near_pieces_make(const wall_piece *pieces, size_t count) NOC_MUST_USE;
+void near_pieces_free(near_pieces *t);
+/* Takes one out, once: it has a facet. */
+void near_pieces_take(near_pieces *t, uint32_t piece);
+/* Those left that may lie in the plane and touch `from`, and some more, in any order. False: no memory. */
+bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_plane *plane,
+                      near_found *found) NOC_MUST_USE;
 
 /* Facets side by side, unrolled: s runs along them, t up. */
 typedef struct strip_part {
