@@ -244,7 +244,8 @@ NOC_API noc_status noc_scene_set_transform(noc_scene *scene, int instance, const
 NOC_API noc_status noc_scene_remove_instance(noc_scene *scene, int instance);
 /* A light that was added as one, with its shape: to take that away costs what noc_scene_remove_mesh does. One added
  * after the commit may take its index. Where it was itself added after the first commit, one of its kind takes the
- * memory of its shape, too. Its name's memory stays with the scene. */
+ * memory of its shape, too. Its name's memory stays with the scene. A light of a lamp that noc_scene_load has given a
+ * body keeps its index and its shape, which is dark. */
 NOC_API noc_status noc_scene_remove_light(noc_scene *scene, int light);
 /* A mesh of the scene itself, with the lights that its triangles are. Its index is not used again, and its memory stays
  * with the scene. One that was there at the first commit costs the next frame a new ray tracing structure of all that
@@ -403,7 +404,7 @@ NOC_API noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *
 typedef struct noc_scene_info {
     /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
-    size_t models, instances;
+    size_t models, instances;       /* bodies of lamps are instances, too */
     size_t instance_triangles;      /* that instances show: of each those of its model */
     size_t cars;                    /* of the instances those that noc_scene_set_time moves */
     double time;                    /* s, of the cars, as published or staged last */

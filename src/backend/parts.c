@@ -55,6 +55,10 @@ void noc_ray_scale_follow(const noc_scene *s, noc_ray_scale *r) {
         for (int k = 0; k < 6; k++)
             r->largest = NOC_MAX(r->largest, fabsf((float)box[k / 3][k % 3]));
     }
+    double box[2][3] = { { 0 } };
+    noc_join_body_bounds(s, box[0], box[1]);
+    for (int k = 0; k < 6; k++)
+        r->largest = NOC_MAX(r->largest, fabsf((float)box[k / 3][k % 3]));
     r->vertices = s->positions.len / 3;
     r->made = (uint32_t)s->versions.geometry;
     r->offset = NOC_MIN(r->largest * 0x1p-19f, 1e-4f);

@@ -32,17 +32,6 @@ static const struct {
 
 /* ---- what the tags mean ---- */
 
-typedef struct fitting {
-    enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
-    noc_light_kind light;
-    double height, radius, lumens, watts;
-    double tilt; /* of its axis from straight down, radians */
-    int heads;
-    bool profiled;
-    geo_fitting ruled; /* what rules say of it */
-    float emission[3]; /* of a profile where it has one, else of the shape */
-} fitting;
-
 static double known(double tagged, double otherwise) { return isfinite(tagged) && tagged > 0 ? tagged : otherwise; }
 
 /* A colour made of luminance 1; false if it is none. */
@@ -98,7 +87,7 @@ bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
 #define FLOOD_TILT 50.0 /* degrees */
 
 /* Lambertian radiance of a flux of 1 lm; of a point, which shines alike to all sides, its intensity. */
-static double of_a_lumen(const fitting *f) {
+static double of_a_lumen(const lamp_fitting *f) {
     double r2 = f->radius * f->radius;
     switch (f->light) {
     case NOC_LIGHT_POINT: return 1 / (4 * M_PI);
@@ -108,7 +97,7 @@ static double of_a_lumen(const fitting *f) {
 }
 
 /* What shines, and whether by a profile. */
-static void choose_light(fitting *f, const city_lamp_params *params) {
+static void choose_light(lamp_fitting *f, const city_lamp_params *params) {
     static const noc_light_kind kinds[NOC_LAMP_SHAPE_COUNT] = {
         [NOC_LAMP_POINT] = NOC_LIGHT_POINT, [NOC_LAMP_SPHERE] = NOC_LIGHT_SPHERE, [NOC_LAMP_DISC] = NOC_LIGHT_DISC
     };
@@ -118,9 +107,9 @@ static void choose_light(fitting *f, const city_lamp_params *params) {
     f->profiled = params->profiles && f->ruled.profile != GEO_NO_PROFILE;
 }
 
-static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
-    fitting f = { .height = known(lamp->height, params->height),
-                  .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
+static lamp_fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
+    lamp_fitting f = { .height = known(lamp->height, params->height),
+                       .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
     f.lumens = known(told_lumens(lamp), params->lumens);
     f.watts = known(lamp->watts, known(f.ruled.file_watts, NAN));
@@ -150,14 +139,6 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
 }
 
 /* ---- where it stands ---- */
-
-typedef struct placing {
-    double foot[3];
-    double facing[2]; /* unit vector the heads look along */
-    bool on_wall;
-    double wall[2]; /* the wall it hangs on */
-    bool crowded;   /* others stand wherever it could */
-} placing;
 
 /* Which way a lamp faces that says nothing and has nothing near: any, but always the same for the same place. */
 static void arbitrary_facing(const double p[3], double facing[2]) {
@@ -217,7 +198,7 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
 }
 
 /* As site_facing, which is not called again for the next lamp at the same place. */
-static bool face(const noc_scene *scene, city_lamp_tally *tally, placing *p) {
+static bool face(const noc_scene *scene, city_lamp_tally *tally, lamp_placing *p) {
     bool known = tally && tally->searched && memcmp(tally->foot, p->foot, sizeof(p->foot)) == 0;
     bool faces = known ? tally->faces : site_facing(scene, p->foot[0], p->foot[1], p->foot[2], p->facing);
     if (known)
@@ -232,7 +213,7 @@ static bool face(const noc_scene *scene, city_lamp_tally *tally, placing *p) {
 }
 
 /* False if the lamp cannot be placed: counted. */
-static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, placing *p,
+static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, lamp_placing *p,
                   geo_issues *issues) {
     memcpy(p->foot, lamp->xyz, sizeof(p->foot));
     stand(scene, lamp, params, p->foot, issues);
@@ -282,202 +263,6 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     return true;
 }
 
-/* ---- building it ---- */
-
-typedef struct builder {
-    noc_scene *scene;
-    const geo_lamp *lamp;
-    const fitting *fitting;
-    const placing *placing;
-    const city_lamp_params *params;
-    const city_body *body; /* the user's; NULL: ours */
-    bool inferred, pole;
-    lamp_shape shape;
-} builder;
-
-/* By what stands there: bollards are low, lanterns stand on posts, others hang over a road or on a wall. */
-static city_profile_kind profile_kind(const builder *b) {
-    const fitting *f = b->fitting;
-    if (f->kind == FITTING_FLOOD)
-        return CITY_PROFILE_FLOOD;
-    if (f->kind == FITTING_SPHERE)
-        return f->height < 1.5 && !b->lamp->body_heads ? CITY_PROFILE_BOLLARD : CITY_PROFILE_POST_TOP;
-    return b->placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
-}
-
-static void tell(const builder *b, int index, const double position[3], const double towards[2]) {
-    const fitting *f = b->fitting;
-    double foot = b->placing->foot[2], degrees = atan2(towards[0], towards[1]) * 180 / M_PI;
-    if (b->lamp->body_heads && !site_ground(b->scene, b->lamp->xyz[0], b->lamp->xyz[1], &foot))
-        foot = NAN;
-    const city_lamp_light light = {
-        .index = index,
-        .height = position[2] - foot,
-        .direction = degrees < 0 ? degrees + 360 : degrees,
-        .watts = f->watts,
-        .profile = f->profiled ? city_profile_name(b->params->profiles, profile_kind(b), f->ruled.profile) : ""
-    };
-    b->params->told(b->params->dresser, &light);
-}
-
-/* towards: the way to the street, level. */
-static bool add_light(const builder *b, const double position[3], const double direction[3], const double towards[2]) {
-    const fitting *f = b->fitting;
-    noc_light light = { .kind = f->light,
-                        .radius = f->light == NOC_LIGHT_POINT ? 0 : f->radius,
-                        .name = b->lamp->id,
-                        .group = f->ruled.group,
-                        .inferred = b->inferred };
-    memcpy(light.position, position, sizeof(light.position));
-    memcpy(light.direction, direction, sizeof(light.direction));
-    memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
-    const double street[3] = { towards[0], towards[1], 0 };
-    if (f->profiled && !city_profile_give(b->params->profiles, profile_kind(b), &f->ruled, street, &light))
-        return false;
-    int index = noc_scene_add_light(b->scene, &light);
-    if (index >= 0 && b->params->told)
-        tell(b, index, position, towards);
-    return index >= 0;
-}
-
-static double foot_radius(const fitting *f) { return NOC_CLAMP(.045 + .006 * f->height, .03, .2); }
-
-static double top_radius(const fitting *f) { return NOC_MIN(foot_radius(f) * .6, f->radius * .4); }
-
-/* How far a head that hangs beside the pole must be off its axis, so that no part of the light lies in the pole, nor
- * over its foot, which is thicker. */
-static double least_reach(const fitting *f) { return f->radius + foot_radius(f) + .02; }
-
-/* How far a head is off the pole's axis. A single lantern sits on top. */
-static double reach(const builder *b) {
-    const fitting *f = b->fitting;
-    if (!b->pole)
-        return f->heads > 1 ? .35 : 0;
-    if (f->kind == FITTING_SPHERE)
-        return f->heads > 1 ? f->radius + .25 : 0;
-    double usual = f->kind == FITTING_FLOOD ? .35 : NOC_CLAMP(.15 * f->height, .6, 1.5);
-    return fmax(isfinite(f->ruled.arm) ? f->ruled.arm : usual, least_reach(f));
-}
-
-/* The axis of a head that faces (dx, dy). */
-static void head_axis(const fitting *f, double dx, double dy, double axis[3]) {
-    axis[0] = sin(f->tilt) * dx;
-    axis[1] = sin(f->tilt) * dy;
-    axis[2] = -cos(f->tilt);
-}
-
-/* The same with the user's body. */
-static bool add_own_head(builder *b, const double at[3], const double axis[3], const double street[2],
-                         const double root[3]) {
-    double light[3];
-    if (b->body->whole)
-        return body_show_whole(b->scene, b->body, b->placing->foot, b->fitting->height, street, light) &&
-               add_light(b, light, axis, street);
-    if (root && hypot(at[0] - root[0], at[1] - root[1]) > .3)
-        shape_bar(&b->shape, root, (double[]){ at[0], at[1], root[2] }, .03);
-    return body_show_head(b->scene, b->body, at, axis, street) && add_light(b, at, axis, street);
-}
-
-/* One head towards (dx, dy), its light at the lamp's height; `root` is where its arm begins. */
-static bool add_head(builder *b, double dx, double dy, const double root[3]) {
-    const fitting *f = b->fitting;
-    const double *foot = b->placing->foot;
-    double off = reach(b), z = foot[2] + f->height;
-    double at[3] = { foot[0] + off * dx, foot[1] + off * dy, z };
-    const double street[2] = { dx, dy }, along[3] = { cos(f->tilt) * dx, cos(f->tilt) * dy, sin(f->tilt) };
-    double axis[3];
-    head_axis(f, dx, dy, axis);
-    /* however many there are, no more stands there than fits: each next lamp would meet all of it */
-    if (b->placing->crowded)
-        return add_light(b, at, axis, street);
-    if (b->body)
-        return add_own_head(b, at, axis, street, root);
-    if (f->kind == FITTING_SPHERE) {
-        if (off > 0 || !b->pole) {
-            double end[3] = { at[0], at[1], z - f->radius - .02 };
-            if (root)
-                shape_bar(&b->shape, root, end, .02);
-        }
-        return add_light(b, at, axis, street);
-    }
-    /* the light's disc hangs below its housing, which never lies before it; a sphere, wholly */
-    double gap = .01, drop = f->light == NOC_LIGHT_SPHERE ? f->radius : 0, face[3], lit[3];
-    for (int k = 0; k < 3; k++) {
-        face[k] = at[k] - gap * axis[k];
-        lit[k] = at[k] + drop * axis[k];
-    }
-    if (f->kind == FITTING_FLOOD) {
-        double side[3] = { -dy, dx, 0 }, back[3];
-        for (int k = 0; k < 3; k++)
-            back[k] = at[k] - .14 * axis[k];
-        shape_housing(&b->shape, face, axis, side, f->radius * 1.3, f->radius * 1.15, fmin(.13, .87 * f->radius));
-        if (root)
-            shape_bar(&b->shape, root, back, .025);
-        return add_light(b, lit, axis, street);
-    }
-    double neck[3];
-    for (int k = 0; k < 3; k++)
-        neck[k] = at[k] - .3 * along[k] - .07 * axis[k];
-    shape_housing(&b->shape, face, axis, along, f->radius * 1.9, f->radius * 1.15, fmin(.12, .8 * f->radius));
-    if (root && off > .3)
-        shape_bar(&b->shape, root, neck, .03);
-    return add_light(b, lit, axis, street);
-}
-
-/* Which way a head looks: its own, where the lamp tells it of each; else they are spread evenly. */
-static void head_facing(const builder *b, int head, double *dx, double *dy) {
-    const geo_lamp *lamp = b->lamp;
-    const double *facing = b->placing->facing;
-    double a = 2 * M_PI * head / b->fitting->heads;
-    if (lamp->heading_count && !b->placing->on_wall)
-        a = ((double)lamp->heading[0] - (double)lamp->heading[head % lamp->heading_count]) * M_PI / 180;
-    *dx = cos(a) * facing[0] - sin(a) * facing[1];
-    *dy = sin(a) * facing[0] + cos(a) * facing[1];
-}
-
-static int add_heads(builder *b) {
-    const fitting *f = b->fitting;
-    const placing *p = b->placing;
-    /* the top of the pole, or where the bracket leaves the wall */
-    double top = p->foot[2] + f->height, root[3] = { p->foot[0], p->foot[1], top };
-    bool has_root = b->pole || p->on_wall;
-    if (p->on_wall) {
-        memcpy(root, p->wall, sizeof(p->wall));
-        root[2] = top + .15;
-    } else if (f->kind == FITTING_SPHERE) {
-        root[2] = top - (f->heads > 1 ? f->radius + .25 : 0);
-    }
-    int lights = 0;
-    for (int i = 0; i < f->heads; i++) {
-        double dx, dy;
-        head_facing(b, i, &dx, &dy);
-        lights += add_head(b, dx, dy, has_root ? root : NULL);
-    }
-    return lights;
-}
-
-static void add_pole(builder *b) {
-    const fitting *f = b->fitting;
-    double foot[3] = { b->placing->foot[0], b->placing->foot[1], b->placing->foot[2] - .1 }; /* into the ground */
-    double top = b->placing->foot[2] + f->height;
-    if (f->kind == FITTING_SPHERE)
-        top -= f->heads > 1 ? f->radius + .22 : f->radius + .005; /* under the globe, or above the roots of its arms */
-    else
-        top += .08;
-    if (top > foot[2] + .12)
-        shape_pole(&b->shape, foot, top, foot_radius(f), top_radius(f));
-}
-
-/* A lamp whose body is modelled: its lights alone, where the body has them. */
-static int add_to_body(const builder *b) {
-    int lights = 0;
-    double axis[3];
-    head_axis(b->fitting, b->placing->facing[0], b->placing->facing[1], axis);
-    for (int i = 0; i < NOC_MIN(b->lamp->body_heads, GEO_BODY_HEADS); i++)
-        lights += add_light(b, b->lamp->head[i], axis, b->placing->facing);
-    return lights;
-}
-
 /* The street of a lamp whose body is modelled: where its first head hangs, else as of a lamp without one. */
 static void face_body(const noc_scene *scene, const geo_lamp *lamp, double facing[2]) {
     double dx = lamp->head[0][0] - lamp->xyz[0], dy = lamp->head[0][1] - lamp->xyz[1], off = hypot(dx, dy), z;
@@ -503,28 +288,16 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
         geo_issue(issues, GEO_SKIPPED, "lamp more than 9000 km from the scene's origin", lamp->id);
         return 0;
     }
-    placing p = { 0 };
+    lamp_placing p = { 0 };
     if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
     if (lamp->body_heads && (params->profiles || lamp->fitting))
         face_body(scene, lamp, p.facing);
-    fitting f = choose_fitting(lamp, params);
+    lamp_fitting f = choose_fitting(lamp, params);
     for (int k = 0; k < 3; k++)
         f.emission[k] *= (float)scene->maintenance;
-    builder b = { .scene = scene,
-                  .lamp = lamp,
-                  .fitting = &f,
-                  .placing = &p,
-                  .params = params,
-                  .inferred = inferred,
-                  .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
-    if (params->body && !lamp->body_heads && (b.pole || !params->body->whole)) /* one with a pole hangs on no wall */
-        b.body = params->body;
-    if (b.pole && !lamp->body_heads && !p.crowded && !(b.body && b.body->whole))
-        add_pole(&b);
-    int lights = lamp->body_heads ? add_to_body(&b) : add_heads(&b);
-    if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */
-        geo_issue(issues, GEO_SKIPPED, "lamp that the scene refused", lamp->id);
-    shape_free(&b.shape);
-    return lights;
+    return lamp_make(
+        &(lamp_making){
+            .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .params = params, .inferred = inferred },
+        issues);
 }

@@ -22,6 +22,41 @@ bool site_facing(const noc_scene *scene, double x, double y, double z, double fa
 /* Does a lamp stand there already? */
 bool site_taken(const noc_scene *scene, double x, double y, double z);
 
+/* ---- what it is and where it stands (lamp.c) ---- */
+
+typedef struct lamp_fitting {
+    enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
+    noc_light_kind light;
+    double height, radius, lumens, watts;
+    double tilt; /* of its axis from straight down, radians */
+    int heads;
+    bool profiled;
+    geo_fitting ruled; /* what rules say of it */
+    float emission[3]; /* of a profile where it has one, else of the shape */
+} lamp_fitting;
+
+typedef struct lamp_placing {
+    double foot[3];
+    double facing[2]; /* unit vector the heads look along */
+    bool on_wall;
+    double wall[2]; /* the wall it hangs on */
+    bool crowded;   /* others stand wherever it could */
+} lamp_placing;
+
+/* ---- making it (lamp_make.c) ---- */
+
+typedef struct lamp_making {
+    noc_scene *scene;
+    const geo_lamp *lamp;
+    const lamp_fitting *fitting;
+    const lamp_placing *placing;
+    const city_lamp_params *params;
+    bool inferred;
+} lamp_making;
+
+/* Adds its lights and its body. Returns how many lights there are, 0 if the scene refused it, which is told. */
+int lamp_make(const lamp_making *m, geo_issues *issues);
+
 /* ---- distributions (lamp_profiles.c) ---- */
 
 /* In the order of noc_profile_builtin_name. */
@@ -58,7 +93,7 @@ bool body_show_whole(noc_scene *scene, const city_body *body, const double foot[
 typedef struct lamp_shape {
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
-    bool no_memory; /* shape_add says so */
+    bool no_memory; /* who adds it says so */
 } lamp_shape;
 
 /* Tapered hexagonal pole with a cap: 16 triangles. */
@@ -69,8 +104,11 @@ void shape_bar(lamp_shape *s, const double from[3], const double to[3], double h
  * 12 triangles. */
 void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3],
                    double half_length, double half_width, double depth);
-/* Adds it as one mesh of class LAMP; false after an error that was reported. */
-bool shape_add(lamp_shape *s, noc_scene *scene, const char *name);
+/* The LAMP material without emission: one a scene. -1 after reporting. */
+int shape_material(noc_scene *scene);
+/* Adds it as one mesh of class LAMP: stood at `foot`, its x turned to `facing`. false after an error that was reported.
+ */
+bool shape_add(lamp_shape *s, noc_scene *scene, const double foot[3], const double facing[2], const char *name);
 void shape_free(lamp_shape *s);
 
 #endif

@@ -93,8 +93,7 @@ void shape_housing(lamp_shape *s, const double centre[3], const double look[3], 
     }
 }
 
-/* The LAMP material without emission: one a scene. */
-static int lamp_material(noc_scene *scene) {
+int shape_material(noc_scene *scene) {
     noc_material m = noc_class_material(NOC_CLASS_LAMP);
     for (size_t i = 0; i < scene->materials.len; i++) {
         const noc_material *have = &scene->materials.data[i];
@@ -106,16 +105,22 @@ static int lamp_material(noc_scene *scene) {
     return noc_scene_add_material(scene, &m);
 }
 
-bool shape_add(lamp_shape *s, noc_scene *scene, const char *name) {
+bool shape_add(lamp_shape *s, noc_scene *scene, const double foot[3], const double facing[2], const char *name) {
     if (s->no_memory)
         noc_scene_out_of_memory(scene);
     if (!s->indices.len)
-        return true;
+        return !s->no_memory;
+    for (double *p = s->xyz.data; p < s->xyz.data + s->xyz.len; p += 3) {
+        double x = p[0], y = p[1];
+        p[0] = foot[0] + facing[0] * x - facing[1] * y;
+        p[1] = foot[1] + facing[1] * x + facing[0] * y;
+        p[2] += foot[2];
+    }
     noc_mesh mesh = { .vertex_count = s->xyz.len / 3,
                       .positions = s->xyz.data,
                       .triangle_count = s->indices.len / 3,
                       .indices = s->indices.data,
-                      .material = lamp_material(scene),
+                      .material = shape_material(scene),
                       .name = name };
     return mesh.material >= 0 && noc_scene_add_mesh(scene, &mesh) >= 0;
 }

@@ -103,10 +103,11 @@ noc_status noc_views_begin(noc_views *v, const noc_scene *scene, const noc_frame
     return NOC_OK;
 }
 
-void noc_views_note_triangle(const noc_views *v, const noc_scene *scene, uint32_t triangle, size_t block, int lane) {
+void noc_views_note_triangle(const noc_views *v, const noc_scene *scene, uint32_t triangle, uint32_t instance,
+                             size_t block, int lane) {
     float(*objects)[BLOCK] = v->made[NOC_AOV_OBJECT], (*walls)[BLOCK] = v->made[NOC_AOV_CLASS];
     if (objects)
-        objects[block][lane] = (float)noc_scene_object_of(scene, triangle);
+        objects[block][lane] = (float)noc_scene_object_of(scene, triangle, instance);
     noc_wall_verdict verdict = walls ? noc_scene_wall(scene, triangle) : NOC_WALL_UNSEEN;
     if (verdict)
         walls[block][lane] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);

@@ -57,8 +57,9 @@ bool noc_views_need_colour(uint32_t aovs);
 noc_status noc_views_begin(noc_views *v, const noc_scene *scene, const noc_frame_blocks *b, uint32_t aovs,
                            noc_log *log);
 float noc_views_start(int aov); /* that value */
-/* A lane sees the scene's triangle. */
-void noc_views_note_triangle(const noc_views *v, const noc_scene *scene, uint32_t triangle, size_t block, int lane);
+/* A lane sees the scene's triangle, which the instance or body of that number shows. */
+void noc_views_note_triangle(const noc_views *v, const noc_scene *scene, uint32_t triangle, uint32_t instance,
+                             size_t block, int lane);
 /* The frame is complete: before its lights and surfaces become those of the frame before. */
 void noc_views_keep(noc_views *v, const noc_frame_blocks *b, const noc_frame *frame);
 /* As noc_backend.aov; b: the last complete frame. */

@@ -28,7 +28,8 @@ static void place(const noc_scene *scene, const noc_met *h, double p[3], double 
     for (int k = 0; k < 3; k++)
         p[k] = scene->positions.data[3 * (size_t)corner[0] + (size_t)k] + h->u * e[k] + h->v * f[k];
     if (h->instance != NO_INSTANCE) {
-        const float *m = scene->instances.data[h->instance].transform;
+        float m[12];
+        noc_placed_transform(scene, h->instance, m);
         double q[3] = { p[0], p[1], p[2] }, t[3] = { n[0], n[1], n[2] };
         for (int k = 0; k < 3; k++) {
             p[k] = m[4 * k] * q[0] + m[4 * k + 1] * q[1] + m[4 * k + 2] * q[2] + m[4 * k + 3];
@@ -53,7 +54,8 @@ static void describe_image(const noc_scene *scene, const noc_met *h, noc_hit *ou
     }
     edges(scene, h->triangle, e, f, n);
     if (h->instance != NO_INSTANCE) {
-        const float *t = scene->instances.data[h->instance].transform;
+        float t[12];
+        noc_placed_transform(scene, h->instance, t);
         const double m[3] = { t[0], t[4], t[8] };
         scale2 = dot(m, m);
     }
@@ -70,8 +72,8 @@ void noc_describe_hit(const noc_scene *scene, const noc_ray *ray, const noc_met 
     *out = (noc_hit){ .hit = true,
                       .cls = scene->materials.data[material].cls,
                       .material = (int)material,
-                      .object = (int)noc_scene_object_of(scene, triangle),
-                      .instance = instance != NO_INSTANCE ? (int)instance : -1,
+                      .object = (int)noc_scene_object_of(scene, triangle, instance),
+                      .instance = instance < NOC_BODIES ? (int)instance : -1,
                       .light = -1 };
     place(scene, h, out->place, out->normal);
     bool front = out->front = dot(out->normal, ray->direction) < 0;
@@ -83,7 +85,7 @@ void noc_describe_hit(const noc_scene *scene, const noc_ray *ray, const noc_met 
     describe_image(scene, h, out);
     if (light == NOC_NO_LIGHT)
         return;
-    out->light = (int)(instance != NO_INSTANCE ? scene->instances.data[instance].lights[light] : light);
+    out->light = (int)(instance != NO_INSTANCE ? noc_placed_light(scene, instance, light) : light);
     const noc_light_record *r = &scene->lights.data[out->light];
     out->shines = (front || r->flags & LIGHT_TWO_SIDED) && (r->e[0] > 0 || r->e[1] > 0 || r->e[2] > 0);
 }

@@ -14,20 +14,33 @@ typedef struct cell_box {
 /* Land that a city stands on, and that may reach far beyond it. */
 #define LAND (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_WATER)
 
+static void add_point(const float v[3], const double lo[3], const double hi[3], cell_box *boxes) {
+    double p[3];
+    int cell[2];
+    for (int k = 0; k < 3; k++)
+        p[k] = NOC_CLAMP((double)v[k], lo[k], hi[k]);
+    for (int k = 0; k < 2; k++)
+        cell[k] = hi[k] > lo[k] ? (int)NOC_MIN(CELLS * ((p[k] - lo[k]) / (hi[k] - lo[k])), CELLS - 1.0) : 0;
+    cell_box *box = &boxes[cell[1] * CELLS + cell[0]];
+    for (int k = 0; k < 3; k++) {
+        box->lo[k] = NOC_MIN(box->lo[k], (float)p[k]);
+        box->hi[k] = NOC_MAX(box->hi[k], (float)p[k]);
+    }
+}
+
 static void add_mesh(const noc_scene *s, const noc_scene_mesh *m, const double lo[3], const double hi[3],
                      cell_box *boxes) {
-    for (size_t i = 3 * (size_t)m->first_triangle; i < 3 * ((size_t)m->first_triangle + m->triangle_count); i++) {
-        const float *v = s->positions.data + 3 * (size_t)s->indices.data[i];
-        double p[3];
-        int cell[2];
-        for (int k = 0; k < 3; k++)
-            p[k] = NOC_CLAMP((double)v[k], lo[k], hi[k]);
-        for (int k = 0; k < 2; k++)
-            cell[k] = hi[k] > lo[k] ? (int)NOC_MIN(CELLS * ((p[k] - lo[k]) / (hi[k] - lo[k])), CELLS - 1.0) : 0;
-        cell_box *box = &boxes[cell[1] * CELLS + cell[0]];
-        for (int k = 0; k < 3; k++) {
-            box->lo[k] = NOC_MIN(box->lo[k], (float)p[k]);
-            box->hi[k] = NOC_MAX(box->hi[k], (float)p[k]);
+    for (size_t i = 3 * (size_t)m->first_triangle; i < 3 * ((size_t)m->first_triangle + m->triangle_count); i++)
+        add_point(s->positions.data + 3 * (size_t)s->indices.data[i], lo, hi, boxes);
+}
+
+static void add_bodies(const noc_scene *s, const double lo[3], const double hi[3], cell_box *boxes) {
+    for (size_t i = 0; i < s->bodies.len; i++) {
+        size_t first, end = noc_body_vertices(s, &s->bodies.data[i], &first);
+        for (size_t v = first; v < end; v++) {
+            float p[3];
+            noc_body_vertex(s, &s->bodies.data[i], v, p);
+            add_point(p, lo, hi, boxes);
         }
     }
 }
@@ -36,8 +49,9 @@ static void add_mesh(const noc_scene *s, const noc_scene_mesh *m, const double l
 static void fill_boxes(const noc_scene *s, const double lo[3], const double hi[3], cell_box *boxes) {
     for (int i = 0; i < CELLS * CELLS; i++)
         boxes[i] = (cell_box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-    bool built = false;
-    for (int land = 0; land < 2 && !built; land++)
+    bool built = s->bodies.len > 0;
+    add_bodies(s, lo, hi, boxes);
+    for (int land = 0; land < 2 && !(land && built); land++)
         for (size_t i = 0; i < s->meshes.len; i++) {
             const noc_scene_mesh *m = &s->meshes.data[i];
             if (!m->triangle_count || !noc_mesh_in_city(s, m) ||

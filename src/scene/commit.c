@@ -433,6 +433,7 @@ static void find_bounds(noc_scene *s) {
                 s->bounds_max[k] = NOC_MAX(s->bounds_max[k], x);
             }
     }
+    noc_join_body_bounds(s, s->bounds_min, s->bounds_max);
 }
 
 static void find_gaps(noc_scene *s) {

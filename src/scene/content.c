@@ -79,7 +79,9 @@ static content_hash add_mesh(content_hash h, const noc_scene *s, size_t mesh) {
 }
 
 static content_hash add_meshes(content_hash h, const noc_scene *s, uint32_t model) {
-    for (size_t i = 0; i < s->meshes.len; i++)
+    const noc_scene_model *m = model ? &s->models.data[model - 1] : NULL;
+    size_t end = m && m->end_mesh ? m->end_mesh : s->meshes.len;
+    for (size_t i = m ? m->first_mesh : 0; i < end; i++)
         if (!s->meshes.data[i].removed && s->meshes.data[i].model == model)
             h = add_mesh(h, s, i);
     return h;
@@ -108,6 +110,23 @@ static content_hash add_instances(content_hash h, const noc_scene *s) {
     return h;
 }
 
+/* Bodies in turn: their model, where they stand, what they show. Models are looked at once each, where there is memory
+ * to note what they are. */
+static content_hash add_bodies(content_hash h, const noc_scene *s) {
+    content_hash *known = s->bodies.len ? noc_calloc(s->models.len, sizeof(*known)) : NULL;
+    for (size_t i = 0; i < s->bodies.len; i++) {
+        const noc_scene_body *b = &s->bodies.data[i];
+        content_hash model = known && known[b->model - 1] ? known[b->model - 1] : add_meshes(start, s, b->model);
+        if (known)
+            known[b->model - 1] = model;
+        h = add(add(add(h, &model, sizeof(model)), b->p, sizeof(b->p)), b->facing, sizeof(b->facing));
+        for (uint32_t k = 0; k < s->models.data[b->model - 1].shown; k++)
+            h = add_light(h, s->lights.data[b->light + k]);
+    }
+    free(known);
+    return h;
+}
+
 /* What was removed is not there, and what order lights and materials were added in does not matter but to lights that
  * nothing shows. */
 void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
@@ -118,7 +137,7 @@ void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
     for (size_t i = 0; i < s->lights.len; i++)
         if (is_bare(&s->lights.data[i]))
             h = add_light(h, s->lights.data[i]);
-    h = add_instances(h, s);
+    h = add_bodies(add_instances(h, s), s);
     if (s->profile_cells.len)
         h = add_array(h, s->profile_cells.data, s->profile_cells.len, sizeof(float));
     if (s->environment) {

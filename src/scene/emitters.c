@@ -91,7 +91,7 @@ static bool take_meshes(const noc_scene *s, noc_emitters *e) {
         const noc_scene_mesh *m = &s->meshes.data[i];
         if (m->removed || m->model || m->panes || !noc_material_shines(&s->materials.data[m->material]))
             continue;
-        size_t of = noc_scene_object_of(s, m->first_triangle);
+        size_t of = noc_scene_object_of(s, m->first_triangle, NO_INSTANCE);
         for (uint32_t t = m->first_triangle; t < m->first_triangle + m->triangle_count; t++) {
             uint32_t light = s->triangle_light.data[t];
             if (light == NOC_NO_LIGHT || !(s->lights.data[light].flags & NOC_LIGHT_OWNED) ||

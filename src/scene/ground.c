@@ -13,6 +13,8 @@
  * touch instead. Long lists are sorted by the highest corner, so that a ray through a stack of triangles ends at the
  * first that no other reaches over.
  *
+ * Bodies of lamps lie in cells of their own (body.c).
+ *
  * Queries may come from several threads while the scene is not changed: bringing the grids up to date is locked. Models
  * and their instances are no ground, which does not move.
  */
@@ -405,10 +407,13 @@ static void cast(vertical_ray *r) {
 }
 
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z) {
-    if (!(fabs(x) < 1e8 && fabs(y) < 1e8) || !scene->triangle_light.len)
+    if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
         return false;
     vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .best = -DBL_MAX };
-    cast(&r);
+    if (scene->triangle_light.len)
+        cast(&r);
+    if (classes >> NOC_CLASS_LAMP & 1)
+        noc_bodies_highest(scene, x, y, &r.best);
     if (r.best == -DBL_MAX)
         return false;
     *z = r.best;

@@ -31,6 +31,8 @@ void noc_keep_models(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_models(noct_file *f, noc_scene *s);
 void noc_keep_instances(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_instances(noct_file *f, noc_scene *s);
+void noc_keep_bodies(noct_writer *w, const noc_scene *s); /* behind the meshes and the lights */
+noc_status noc_kept_bodies(noct_file *f, noc_scene *s);
 
 /* keep_environment.c */
 void noc_keep_environment(noct_writer *w, const noc_scene *s);

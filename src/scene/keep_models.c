@@ -5,15 +5,17 @@
 
 typedef struct kept_model {
     double bounds_min[3], bounds_max[3];
-    uint32_t name, lights;
+    uint32_t name, lights, shown, unused;
 } kept_model;
-_Static_assert(sizeof(kept_model) == 56, "it has no gaps");
+_Static_assert(sizeof(kept_model) == 64, "it has no gaps");
+
+enum { MOST_SHOWN = 1 << 16 };
 
 void noc_keep_models(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "models");
     for (size_t i = 0; i < s->models.len; i++) {
         const noc_scene_model *m = &s->models.data[i];
-        kept_model k = { .name = noct_name(w, m->name), .lights = (uint32_t)m->lights.len };
+        kept_model k = { .name = noct_name(w, m->name), .lights = (uint32_t)m->lights.len, .shown = m->shown };
         memcpy(k.bounds_min, m->bounds_min, sizeof(k.bounds_min));
         memcpy(k.bounds_max, m->bounds_max, sizeof(k.bounds_max));
         noct_put(w, &k, sizeof(k));
@@ -42,7 +44,7 @@ static bool bounds_fit(const kept_model *k) {
 
 static noc_status take_model(noct_file *f, noc_scene *s, const kept_model *k, noc_light_record *lights,
                              const uint32_t *names) {
-    noc_scene_model m = { .name = noct_name_at(f, k->name) };
+    noc_scene_model m = { .name = noct_name_at(f, k->name), .shown = k->shown };
     memcpy(m.bounds_min, k->bounds_min, sizeof(m.bounds_min));
     memcpy(m.bounds_max, k->bounds_max, sizeof(m.bounds_max));
     noc_scene_model *to = &s->models.data[s->models.len++];
@@ -55,6 +57,8 @@ static noc_status take_model(noct_file *f, noc_scene *s, const kept_model *k, no
         if (!noc_kept_light_fits(s, &lights[i]) || lights[i].flags & NOC_LIGHT_FREE)
             return noct_wrong(f, "a light of model %zu is none", s->models.len);
     }
+    if (k->shown > MOST_SHOWN || (k->shown && k->lights))
+        return noct_wrong(f, "model %zu shows %u lights", s->models.len, k->shown);
     return bounds_fit(k) ? f->status : noct_wrong(f, "model %zu lies nowhere", s->models.len);
 }
 
@@ -152,4 +156,63 @@ noc_status noc_kept_instances(noct_file *f, noc_scene *s) {
     }
     free(owned);
     return f->status || taken == lights ? f->status : noct_wrong(f, "lights of no instance");
+}
+
+/* ---- bodies ---- */
+
+void noc_keep_bodies(noct_writer *w, const noc_scene *s) {
+    noct_put_array(w, "bodies", s->bodies.data, s->bodies.len, sizeof(*s->bodies.data));
+}
+
+static bool body_fits(const noc_scene *s, const noc_scene_body *b, size_t from) {
+    const noc_scene_model *m = b->model && b->model <= s->models.len ? &s->models.data[b->model - 1] : NULL;
+    double turn = (double)b->facing[0] * b->facing[0] + (double)b->facing[1] * b->facing[1];
+    if (!m || !m->shown || !m->end_mesh || b->light < from || b->light > s->lights.len - m->shown ||
+        m->shown > s->lights.len)
+        return false;
+    for (uint32_t i = 0; i < m->shown; i++)
+        if (s->lights.data[b->light + i].flags & (NOC_LIGHT_OWNED | NOC_LIGHT_MOVES))
+            return false;
+    return noc_kept_finite(b->p, 3, 1e7f) && fabs(turn - 1) < 1e-5;
+}
+
+/* The meshes of models that bodies show follow one another. false: those of one do not. */
+static bool find_ranges(noc_scene *s) {
+    for (uint32_t i = 0; i < s->meshes.len; i++) {
+        const noc_scene_mesh *mesh = &s->meshes.data[i];
+        noc_scene_model *m = mesh->model ? &s->models.data[mesh->model - 1] : NULL;
+        if (!m || !m->shown)
+            continue;
+        if ((m->end_mesh && m->end_mesh != i) || mesh->removed)
+            return false;
+        m->first_mesh = m->end_mesh ? m->first_mesh : i;
+        m->end_mesh = i + 1;
+    }
+    return true;
+}
+
+/* Slots whose lights were removed are the bodies' for good. */
+static void keep_slots(noc_scene *s) {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->light_slots.free.len; i++)
+        if (!noc_body_of(s, s->light_slots.free.data[i]))
+            s->light_slots.free.data[kept++] = s->light_slots.free.data[i];
+    s->light_slots.free.len = kept;
+}
+
+noc_status noc_kept_bodies(noct_file *f, noc_scene *s) {
+    size_t count, from = 0;
+    noc_scene_body *b = noct_array(f, "bodies", sizeof(*b), &count);
+    if (f->status || count >= INT32_MAX || !find_ranges(s))
+        return noct_wrong(f, "it has %zu bodies of lamps", count);
+    for (size_t i = 0; i < count; i++) {
+        if (!body_fits(s, &b[i], from))
+            return noct_wrong(f, "the body of lamp %zu is none", i);
+        noc_scene_model *m = &s->models.data[b[i].model - 1];
+        from = b[i].light + m->shown;
+        m->instances++;
+    }
+    array_borrow(&s->bodies, b, count);
+    keep_slots(s);
+    return noc_bodies_file(s, 0) ? f->status : noct_no_memory(f);
 }

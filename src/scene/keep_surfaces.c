@@ -213,7 +213,8 @@ static bool check_mesh(const triangle_check *c, size_t mesh, size_t first, size_
     noc_scene *s = c->s;
     const noc_scene_mesh *m = &s->meshes.data[mesh];
     uint32_t lo = m->first_vertex, count = (uint32_t)(noc_mesh_end_vertex(s, mesh) - lo);
-    size_t lights = m->model ? s->models.data[m->model - 1].lights.len : s->lights.len;
+    const noc_scene_model *model = m->model ? &s->models.data[m->model - 1] : NULL;
+    size_t lights = model ? model->lights.len + model->shown : s->lights.len;
     bool ok = true;
     for (size_t i = 3 * first; i < 3 * end; i++)
         ok &= s->indices.data[i] - lo < count;

@@ -294,6 +294,10 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index, cons
     return true;
 }
 
+bool noc_scene_add_shape(noc_scene *scene, const noc_light *l, uint32_t number) {
+    return is_point(l) || add_shape(scene, l, number, NULL);
+}
+
 /* Of a model: the number that it has there. */
 static int add_to_model(noc_scene *scene, const noc_light *l, const char *name) {
     noc_scene_model *m = noc_scene_model_of(scene, l->model);
@@ -309,15 +313,15 @@ static int add_to_model(noc_scene *scene, const noc_light *l, const char *name) 
     return (int)index;
 }
 
-/* Straight into the arrays, before the first commit. */
-static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name) {
+/* Straight into the arrays, before the first commit. bare: without a shape. */
+static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name, bool bare) {
     uint32_t index = (uint32_t)scene->lights.len;
     if (!array_reserve(&scene->lights, index + 1) || !array_reserve(&scene->light_names, index + 1) ||
         (l->moving && !array_reserve(&scene->moving, scene->moving.len + 1))) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    if (!is_point(l) && !l->moving && !add_shape(scene, l, index, name))
+    if (!bare && !is_point(l) && !l->moving && !add_shape(scene, l, index, name))
         return -1;
     scene->lights.data[scene->lights.len++] = noc_light_record_of(scene, l);
     scene->light_names.data[scene->light_names.len++] = name;
@@ -342,14 +346,11 @@ static int stage_light(noc_scene *scene, const noc_light *l, const char *name) {
     return (int)slot;
 }
 
-int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
-    if (!scene || !l) {
-        noc_null(scene ? scene->log : NULL, __func__);
-        return -1;
-    }
+/* Reports what is wrong with it; keeps its name. */
+static bool takes_light(noc_scene *scene, const noc_light *l, const char **name) {
     if (scene->no_memory)
-        return -1;
-    const char *wrong = noc_light_fault(l), *name;
+        return false;
+    const char *wrong = noc_light_fault(l);
     if (!wrong)
         wrong = noc_light_profile_fault(scene, l);
     char text[NOC_FAULT];
@@ -357,11 +358,25 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         wrong = text;
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", l->name ? l->name : "unnamed", wrong);
+        return false;
+    }
+    return noc_scene_keep_name(scene, l->name, name);
+}
+
+int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
+    const char *name;
+    if (!scene || !l) {
+        noc_null(scene ? scene->log : NULL, __func__);
         return -1;
     }
-    if (!noc_scene_keep_name(scene, l->name, &name))
+    if (!takes_light(scene, l, &name))
         return -1;
     if (l->model)
         return add_to_model(scene, l, name);
-    return scene->committed ? stage_light(scene, l, name) : add_to_arrays(scene, l, name);
+    return scene->committed ? stage_light(scene, l, name) : add_to_arrays(scene, l, name, false);
+}
+
+int noc_scene_add_body_light(noc_scene *scene, const noc_light *l) {
+    const char *name;
+    return takes_light(scene, l, &name) ? add_to_arrays(scene, l, name, true) : -1;
 }

@@ -13,9 +13,11 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
            s->later_bytes + models + (s->profile_cells.cap + s->uv.cap) * sizeof(float) +
            s->texels.cap * sizeof(uint32_t) + (s->environment ? s->environment->bytes : 0) +
-           s->instances.cap * sizeof(noc_scene_instance) + s->stops.cap * sizeof(noc_scene_stop) +
-           s->routes.cap * sizeof(noc_scene_route) + s->cars.cap * sizeof(noc_scene_car) +
-           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap + s->material_names.cap * sizeof(char *);
+           s->instances.cap * sizeof(noc_scene_instance) + s->bodies.cap * sizeof(noc_scene_body) +
+           s->body_links.cap * sizeof(noc_body_link) + s->body_cells.cap * sizeof(uint32_t) +
+           s->stops.cap * sizeof(noc_scene_stop) + s->routes.cap * sizeof(noc_scene_route) +
+           s->cars.cap * sizeof(noc_scene_car) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap +
+           s->material_names.cap * sizeof(char *);
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -82,6 +84,7 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
                               .crs = scene->crs_name ? scene->crs_name : "" };
     for (size_t i = 0; i < scene->instances.len; i++)
         info->instances += scene->instances.data[i].model > 0;
+    info->instances += scene->bodies.len;
     info->cars = scene->cars.len;
     info->time = scene->time;
     info->maintenance = scene->maintenance;
@@ -168,7 +171,9 @@ static bool same_name(const noc_scene_mesh *a, const noc_scene_mesh *b) {
 }
 
 /* An object comes as several meshes, one a class and material, one after the other: the first stands for them. */
-size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle) {
+size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle, uint32_t instance) {
+    if (noc_is_body(instance))
+        return scene->meshes.len + (instance - NOC_BODIES);
     size_t mesh = noc_scene_mesh_of(scene, triangle);
     while (mesh && same_name(&scene->meshes.data[mesh], &scene->meshes.data[mesh - 1]))
         mesh--;
@@ -179,7 +184,10 @@ const char *noc_scene_object_name(const noc_scene *scene, size_t object) {
     if (!scene)
         return NULL;
     noc_scene_lock_read(scene);
-    const char *name = object < scene->meshes.len ? scene->meshes.data[object].name : NULL;
+    size_t body = object - scene->meshes.len; /* they come behind the meshes */
+    const char *name = object < scene->meshes.len ? scene->meshes.data[object].name
+                       : body < scene->bodies.len ? scene->light_names.data[scene->bodies.data[body].light]
+                                                  : NULL;
     noc_scene_unlock_read(scene);
     return name;
 }

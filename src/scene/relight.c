@@ -65,6 +65,8 @@ void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c) {
     c->standing |= stood;
     c->lights = true;
     write_record(s, slot, &free_slot);
+    if (noc_body_of(s, slot)) /* which shows no other light instead */
+        return;
     s->light_names.data[slot] = NULL;
     if (stood)
         s->dark_slots.data[s->dark_slots.len++] = slot;

@@ -74,6 +74,10 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->walls);
     array_free(&scene->models);
     array_free(&scene->instances);
+    array_free(&scene->bodies);
+    array_free(&scene->body_links);
+    array_free(&scene->body_cells);
+    array_free(&scene->body_kinds);
     array_free(&scene->stops);
     array_free(&scene->routes);
     array_free(&scene->cars);

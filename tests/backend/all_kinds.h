@@ -82,6 +82,40 @@ static inline void add_panes(noc_scene *s, int model) {
     add_pane(s, 0.5f, 0, model, (double[]){ -0.5, -0.3, 0 }, 1, 1.5, false);
 }
 
+/* Bodies that each show two lights of the crowd's kinds, of two models. */
+static inline void add_bodies(noc_scene *s) {
+    double xyz[] = { -0.1, 0, 0, 0.1, 0, 0, 0.1, 0, 2, -0.1, 0, 2, 0, -0.1, 0, 0, 0.1, 0, 0, 0.1, 2, 0, -0.1, 2 };
+    int material = noc_scene_add_material(s, &(noc_material){ .albedo = { .4f, .4f, .4f }, .roughness = 1 }), model[2];
+    noc_mesh post = { .vertex_count = 8,
+                      .positions = xyz,
+                      .triangle_count = 4,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7 },
+                      .material = material };
+    noc_light heads[2] = {
+        { .kind = NOC_LIGHT_DISC, .position = { 0.4, 0, 2 }, .direction = { 0, 0, -1 }, .radius = 0.2 },
+        { .kind = NOC_LIGHT_SPHERE, .position = { -0.4, 0, 2 }, .radius = 0.15 },
+    };
+    for (int i = 0; i < 2; i++)
+        assert_true((model[i] = noc_scene_add_body_model(s, i ? NULL : &post, heads, 2)) > 0);
+    for (int i = 0; i < 6; i++) {
+        float angle = 0.7f * (float)i, at[3] = { -3 + 1.2f * (float)i, -5.5f + 0.3f * (float)i, 0 };
+        noc_scene_body body = {
+            (uint32_t)model[i % 2], (uint32_t)s->lights.len, { at[0], at[1], at[2] }, { cosf(angle), sinf(angle) }
+        };
+        for (int k = 0; k < 2; k++) {
+            noc_light l = heads[k];
+            double x = l.position[0];
+            l.position[0] = at[0] + body.facing[0] * x;
+            l.position[1] = at[1] + body.facing[1] * x;
+            for (int c = 0; c < 3; c++)
+                l.emission[c] = (float)(100 + 20 * c + 50 * i);
+            l.name = "post";
+            assert_true(noc_scene_add_body_light(s, &l) >= 0);
+        }
+        assert_true(noc_scene_add_body(s, &body));
+    }
+}
+
 /* A glossy floor, a board with an image, models that move and shine, lights of every kind, some with profiles; not
  * committed. */
 static inline noc_scene *all_kinds_open(bool panes, int *car) {
@@ -113,6 +147,7 @@ static inline noc_scene *all_kinds_open(bool panes, int *car) {
         }
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
+    add_bodies(s);
     for (int i = 0; i < 3; i++) {
         noc_instance in = { model, { 1.5, 0, 0, -4 + 4 * i, 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
         int index = noc_scene_add_instance(s, &in);

@@ -69,17 +69,22 @@ static inline hit_numbers find_numbers(const vk_world *w) {
     return n;
 }
 
-/* The entry of an instance: entries of the world come first, then those of instances in their order. */
+static inline uint32_t entries_of_model(const vk_world *w, uint32_t model) {
+    return model ? entries_of(w->structure.models.data[model - 1]) : 0;
+}
+
+/* The entry of an instance: entries of the world come first, then those of bodies, and of instances, in their order. */
 static inline uint32_t entry_of(const vk_world *w, const hit_numbers *n, uint32_t triangle, uint32_t instance) {
     uint32_t entry = 0;
     if (instance == NO_INSTANCE)
         return n->entry[triangle];
     for (size_t i = 0; i < w->structure.world.len; i++)
         entry += entries_of(w->structure.world.data[i]);
-    for (uint32_t i = 0; i < instance; i++) {
-        uint32_t model = w->scene->instances.data[i].model;
-        entry += model ? entries_of(w->structure.models.data[model - 1]) : 0;
-    }
+    uint32_t bodies = noc_is_body(instance) ? instance - NOC_BODIES : (uint32_t)w->scene->bodies.len;
+    for (uint32_t i = 0; i < bodies; i++)
+        entry += entries_of_model(w, w->scene->bodies.data[i].model);
+    for (uint32_t i = 0; i < instance && !noc_is_body(instance); i++)
+        entry += entries_of_model(w, w->scene->instances.data[i].model);
     return entry + n->entry[triangle];
 }
 

@@ -50,6 +50,34 @@ static inline void add_building(noc_scene *scene, double x0, double y0, double x
     assert_true(noc_scene_add_mesh(scene, &roof) >= 0);
 }
 
+/* Corners of the triangles that a ray meets, of the world and of bodies where they stand: numbered one after the
+ * other. *light: the light that it shows, or NOC_NO_LIGHT. false: there are no more. */
+static inline bool standing_triangle(const noc_scene *s, size_t number, double v[3][3], uint32_t *light) {
+    const noc_scene_body *body = NULL;
+    size_t t = SIZE_MAX;
+    for (size_t b = 0; b <= s->bodies.len && t == SIZE_MAX; b++)
+        for (size_t i = 0; i < s->meshes.len && t == SIZE_MAX; i++) {
+            const noc_scene_mesh *m = &s->meshes.data[i];
+            body = b ? &s->bodies.data[b - 1] : NULL;
+            if (m->model != (body ? body->model : 0))
+                continue;
+            if (number < m->triangle_count)
+                t = m->first_triangle + number;
+            number -= m->triangle_count;
+        }
+    for (int i = 0; i < 3 && t != SIZE_MAX; i++) {
+        uint32_t vertex = s->indices.data[3 * t + (size_t)i];
+        float p[3];
+        memcpy(p, s->positions.data + 3 * (size_t)vertex, sizeof(p));
+        if (body)
+            noc_body_vertex(s, body, vertex, p);
+        for (int k = 0; k < 3; k++)
+            v[i][k] = p[k];
+    }
+    *light = t != SIZE_MAX ? s->triangle_light.data[t] : NOC_NO_LIGHT;
+    return t != SIZE_MAX;
+}
+
 static inline geo_lamp lamp_at(double x, double y) {
     return (geo_lamp){ .xyz = { x, y, NAN },
                        .height = NAN,

@@ -234,14 +234,13 @@ static void test_efficacies(void **state) {
 }
 
 static bool ray_hits(const noc_scene *scene, const double o[3], const double d[3], double reach) {
-    for (size_t t = 0; t < scene->triangle_light.len; t++) {
-        const float *v[3];
+    double v[3][3];
+    uint32_t shown;
+    for (size_t t = 0; standing_triangle(scene, t, v, &shown); t++) {
         double e1[3], e2[3], p[3], s[3], q[3];
-        for (int i = 0; i < 3; i++)
-            v[i] = scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + i];
         for (int k = 0; k < 3; k++) {
-            e1[k] = (double)v[1][k] - v[0][k];
-            e2[k] = (double)v[2][k] - v[0][k];
+            e1[k] = v[1][k] - v[0][k];
+            e2[k] = v[2][k] - v[0][k];
             s[k] = o[k] - v[0][k];
         }
         for (int k = 0; k < 3; k++)
@@ -254,7 +253,7 @@ static bool ray_hits(const noc_scene *scene, const double o[3], const double d[3
             q[k] = s[(k + 1) % 3] * e1[(k + 2) % 3] - s[(k + 2) % 3] * e1[(k + 1) % 3];
         double w = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det,
                x = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
-        if (u >= 0 && w >= 0 && u + w <= 1 && x > 1e-3 && x < reach && scene->triangle_light.data[t] == NOC_NO_LIGHT)
+        if (u >= 0 && w >= 0 && u + w <= 1 && x > 1e-3 && x < reach && shown == NOC_NO_LIGHT)
             return true;
     }
     return false;
@@ -435,11 +434,10 @@ static void test_no_ground(void **state) {
 
 /* Whether a ray meets a triangle of the scene's meshes within `far` m. */
 static bool is_blocked(const noc_scene *s, const double o[3], const double d[3], double far) {
-    for (size_t t = 0; t < s->triangle_material.len; t++) {
-        double v[3][3], e[2][3], p[3], q[3], u = 0, w = 0, det = 0, at = 0;
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++)
-                v[i][k] = s->positions.data[3 * (size_t)s->indices.data[3 * t + (size_t)i] + (size_t)k];
+    double v[3][3];
+    uint32_t shown;
+    for (size_t t = 0; standing_triangle(s, t, v, &shown); t++) {
+        double e[2][3], p[3], q[3], u = 0, w = 0, det = 0, at = 0;
         for (int k = 0; k < 3; k++) {
             e[0][k] = v[1][k] - v[0][k];
             e[1][k] = v[2][k] - v[0][k];

@@ -252,7 +252,7 @@ static void lamps_are_bounded(void **state) {
     assert_int_equal(load("many.csv", 0.004), NOC_ERR_MEMORY);
     assert_non_null(strstr(errors, "many.csv: the scene with it would take"));
     assert_non_null(strstr(errors, "the limit --max-memory is 0.004 GB"));
-    assert_int_equal(load("many.csv", 0.03), NOC_ERR_MEMORY); /* they can wait in that, but not stand */
+    assert_int_equal(load("many.csv", 0.012), NOC_ERR_MEMORY); /* they can wait in that, but not stand */
     assert_int_equal(error_count, 1);
     assert_int_equal(load("many.csv", 1), NOC_OK);
 }

@@ -152,7 +152,7 @@ static void models_are_no_city(void **unused) {
     assert_int_equal(info.models, 1);
     assert_int_equal(info.instances, 1);
     assert_int_equal(info.instance_triangles, info.triangles - 2); /* all but the ground's */
-    assert_string_equal(noc_scene_object_name(s, noc_scene_object_of(s, 0)), "body");
+    assert_string_equal(noc_scene_object_name(s, noc_scene_object_of(s, 0, NO_INSTANCE)), "body");
     place(0, 1, 0, at);
     noc_scene_destroy(s);
     noc_scene_destroy(bare);

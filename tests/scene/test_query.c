@@ -92,7 +92,7 @@ static void pieces_of_an_object_are_one(void **state) {
     for (int i = 0; i < 6; i++)
         add_piece(s, m, names[i], i);
     for (uint32_t i = 0; i < 6; i++) {
-        size_t object = noc_scene_object_of(s, i);
+        size_t object = noc_scene_object_of(s, i, NO_INSTANCE);
         assert_int_equal(object, want[i]);
         const char *name = noc_scene_object_name(s, object);
         assert_true(names[i] ? name && !strcmp(name, names[i]) : !name);

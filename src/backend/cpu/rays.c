@@ -52,11 +52,13 @@ static void gather_image(const noc_scene *scene, uint32_t triangle, int l, struc
     out->textured |= 1u << l;
 }
 
-static void gather_instance(const noc_scene_instance *in, int l, struck_block *out) {
+static void gather_instance(const noc_scene *scene, uint32_t instance, int l, struck_block *out) {
+    float m[12];
+    noc_placed_transform(scene, instance, m);
     for (int k = 0; k < 12; k++)
-        out->transform[k][l] = in->transform[k];
+        out->transform[k][l] = m[k];
     if (out->light[l] != NOC_NO_LIGHT)
-        out->light[l] = in->lights[out->light[l]];
+        out->light[l] = noc_placed_light(scene, instance, out->light[l]);
     out->placed |= 1u << l;
 }
 
@@ -73,7 +75,7 @@ static void gather_hit(const noc_scene *scene, const hitblock *h, int l, struck_
     out->light[l] = scene->triangle_light.data[triangle];
     out->lanes |= 1u << l;
     if (h->instance[l] != NO_INSTANCE)
-        gather_instance(&scene->instances.data[h->instance[l]], l, out);
+        gather_instance(scene, h->instance[l], l, out);
     if (scene->texels.len)
         gather_image(scene, triangle, l, out);
 }
@@ -106,12 +108,12 @@ void noc_cpu_primary(const stage_run *run, worker *w, const rayblock *rays, cons
     if (s->recording)
         keep_primary(s, w, rays, chance, valid);
     closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, chance, &h);
-    if (s->b.instance)
-        memcpy(s->b.instance[at], h.instance, sizeof(h.instance));
+    for (int l = 0; s->b.instance && l < BLOCK; l++) /* bodies stay where they are, as the world does */
+        s->b.instance[at][l] = h.instance[l] < NOC_BODIES ? h.instance[l] : NO_INSTANCE;
     for (int l = 0; l < BLOCK; l++)
         if (h.triangle[l] != NO_HIT) {
             gather_hit(s->scene, &h, l, &found);
-            noc_views_note_triangle(&s->b.views, s->scene, h.triangle[l], at, l);
+            noc_views_note_triangle(&s->b.views, s->scene, h.triangle[l], h.instance[l], at, l);
         }
     run->k->hits(&run->ctx, rays, &found, &s->b.g[run->frame->gbuffer][at]);
 }

@@ -18,7 +18,7 @@ typedef struct shadow_block {
 /* Nearest hits. */
 typedef struct hitblock {
     ALIGNED uint32_t triangle[BLOCK]; /* of the scene; NO_HIT */
-    uint32_t instance[BLOCK];         /* of the scene, that shows the triangle; NO_INSTANCE: the world */
+    uint32_t instance[BLOCK];         /* that shows the triangle: as noc_placed_transform numbers them; NO_INSTANCE */
     float u[BLOCK], v[BLOCK];         /* barycentric, of the second and the third corner */
     float t[BLOCK];                   /* along the ray's direction, in its lengths */
 } hitblock;
@@ -28,7 +28,8 @@ typedef struct hitblock {
 typedef enum noc_ray_world {
     NOC_RAYS_NOW,      /* the scene as it is */
     NOC_RAYS_PAST,     /* as it was before the structure followed it last */
-    NOC_RAYS_STANDING, /* what blocks light as long as nothing is removed: no instances, nothing that lets it through */
+    NOC_RAYS_STANDING, /* what blocks light as long as nothing is removed: no instances but bodies, nothing that
+                        * lets it through */
 } noc_ray_world;
 
 typedef struct noc_tracer {

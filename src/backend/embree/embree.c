@@ -133,16 +133,27 @@ static void no_hits(struct RTCRayHit16 *h) {
     memset(h->hit.instID, 0xff, sizeof(h->hit.instID));
 }
 
+/* The part that a ray met, and the number of what shows it. above: instID of the hit. */
+static const embree_part *part_of(const embree_structure *s, const embree_generation *g, embree_layer layer,
+                                  uint32_t above, uint32_t *instance) {
+    *instance = NO_INSTANCE;
+    if (above == RTC_INVALID_GEOMETRY_ID)
+        return g->base;
+    bool body = noc_is_body(above);
+    *instance = body ? above : g->above[layer].data[above].instance;
+    return body ? s->models.data[s->scene->bodies.data[above - NOC_BODIES].model - 1]
+                : g->above[layer].data[above].part;
+}
+
 /* Copies what a packet has hit; lanes that it missed keep what they have. */
-static void take_hits(const embree_generation *g, embree_layer layer, const struct RTCRayHit16 *h, uint32_t valid,
-                      hitblock *hits) {
+static void take_hits(const embree_structure *s, const embree_generation *g, embree_layer layer,
+                      const struct RTCRayHit16 *h, uint32_t valid, hitblock *hits) {
     for (int l = 0; l < BLOCK; l++) {
         if (!(valid >> l & 1) || h->hit.geomID[l] == RTC_INVALID_GEOMETRY_ID)
             continue;
         uint32_t above = h->hit.instID[0][l];
-        const embree_above *a = above != RTC_INVALID_GEOMETRY_ID ? &g->above[layer].data[above] : NULL;
-        hits->triangle[l] = h->hit.primID[l] + (a ? a->part : g->base)->first[layer].data[h->hit.geomID[l]];
-        hits->instance[l] = a ? a->instance : NO_INSTANCE;
+        const embree_part *part = part_of(s, g, layer, above, &hits->instance[l]);
+        hits->triangle[l] = h->hit.primID[l] + part->first[layer].data[h->hit.geomID[l]];
         hits->u[l] = h->hit.u[l];
         hits->v[l] = h->hit.v[l];
         hits->t[l] = h->ray.tfar[l];
@@ -166,9 +177,11 @@ static void closest(void *structure, noc_ray_world in, const rayblock *rays, flo
     embree_fill_rays(rays, far, &h.ray);
     no_hits(&h);
     rt_intersect16(lanes, g->base->rtc[LAYER_SOLID], &h, coherent);
+    if (s->bodies)
+        rt_intersect16(lanes, s->bodies, &h, coherent);
     if (g->top[LAYER_SOLID] && all)
         rt_intersect16(lanes, g->top[LAYER_SOLID], &h, coherent);
-    take_hits(g, LAYER_SOLID, &h, valid, hits);
+    take_hits(s, g, LAYER_SOLID, &h, valid, hits);
     const RTCScene through[] = { g->base->rtc[LAYER_THROUGH], g->top[LAYER_THROUGH] };
     if (!all || (!through[0] && !through[1]))
         return;
@@ -176,7 +189,7 @@ static void closest(void *structure, noc_ray_world in, const rayblock *rays, flo
     for (int i = 0; i < 2; i++)
         if (through[i])
             noc_embree_meet(through[i], s->scene, lanes, chance, &h);
-    take_hits(g, LAYER_THROUGH, &h, valid, hits);
+    take_hits(s, g, LAYER_THROUGH, &h, valid, hits);
 }
 
 static bool through(void *structure, const shadow_block *blocks, int count, float (*out)[BLOCK]) {
@@ -194,21 +207,26 @@ static bool through(void *structure, const shadow_block *blocks, int count, floa
     return true;
 }
 
-/* What the base does not block is traced above it. */
-static void occluded(void *structure, noc_ray_world in, shadow_block *blocks, int count) {
-    const embree_structure *s = structure;
-    const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
+/* Traces what nothing has blocked so far. */
+static void trace_rest(RTCScene scene, shadow_block *blocks, int count) {
     uint32_t valid[MANY_BLOCKS];
-    noc_embree_trace_many(g->base->rtc[LAYER_SOLID], blocks, count);
-    if (!g->top[LAYER_SOLID] || in == NOC_RAYS_STANDING)
-        return;
     for (int i = 0; i < count; i++) {
         valid[i] = blocks[i].valid;
         blocks[i].valid = blocks[i].unoccluded;
     }
-    noc_embree_trace_many(g->top[LAYER_SOLID], blocks, count);
+    noc_embree_trace_many(scene, blocks, count);
     for (int i = 0; i < count; i++)
         blocks[i].valid = valid[i];
+}
+
+static void occluded(void *structure, noc_ray_world in, shadow_block *blocks, int count) {
+    const embree_structure *s = structure;
+    const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
+    noc_embree_trace_many(g->base->rtc[LAYER_SOLID], blocks, count);
+    if (s->bodies)
+        trace_rest(s->bodies, blocks, count);
+    if (g->top[LAYER_SOLID] && in != NOC_RAYS_STANDING)
+        trace_rest(g->top[LAYER_SOLID], blocks, count);
 }
 
 static const noc_tracer tracer = { .name = "embree",

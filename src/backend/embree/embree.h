@@ -50,7 +50,8 @@ struct embree_structure {
     const noc_scene *scene;
     embree_generation now, past;  /* past: NULLs before the scene has changed */
     embree_parts world;           /* parts of it in the order of their meshes; the first is now's base */
-    embree_parts models;          /* NULL for those that no instance has shown */
+    embree_parts models;          /* NULL for those that no instance or body has shown */
+    RTCScene bodies;              /* of lamps; NULL: there are none */
     uint64_t geometry, instances; /* versions of the scene that `now` knows */
     _Atomic ssize_t bytes;        /* held by Embree */
     atomic_bool refused;          /* memory that it asked for */
@@ -62,6 +63,10 @@ noc_status noc_embree_follow(embree_structure *s);
 void noc_embree_release_parts(embree_structure *s);
 /* embree.c */
 noc_status noc_embree_fail(embree_structure *s, enum RTCError code, const char *text);
+
+RTCScene noc_embree_new_scene(embree_structure *s); /* NULL after reporting */
+/* bodies.c: of models that are built. false after reporting. */
+bool noc_embree_build_bodies(embree_structure *s);
 
 /* room.c */
 /* Is there memory for a block of so many bytes, and all that TBB may take beside it? threads: of a build. */

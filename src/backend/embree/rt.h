@@ -25,6 +25,10 @@ static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCS
     rtcIntersect16(valid, scene, rays, &args);
 }
 
+static inline void rt_intersect1(RTCScene scene, struct RTCRayHit *ray) { rtcIntersect1(scene, ray, NULL); }
+
+static inline void rt_occluded1(RTCScene scene, struct RTCRay *ray) { rtcOccluded1(scene, ray, NULL); }
+
 static inline void rt_occluded16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRay16 *rays) {
     struct RTCOccludedArguments args;
     rtcInitRayQueryContext(context);
@@ -44,6 +48,18 @@ static inline void rt_intersect16_in(rt_context *context, const int *valid, RTCS
     rtcInitIntersectContext(context);
     context->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, context, rays);
+}
+
+static inline void rt_intersect1(RTCScene scene, struct RTCRayHit *ray) {
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, ray);
+}
+
+static inline void rt_occluded1(RTCScene scene, struct RTCRay *ray) {
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, ray);
 }
 
 static inline void rt_occluded16_in(rt_context *context, const int *valid, RTCScene scene, struct RTCRay16 *rays) {

@@ -1,10 +1,10 @@
 /* Ray tracing structures of a scene, and how they follow its edits.
  *
  * What is there when a view first looks is one part, built at once and traced first: scenes that are not edited cost
- * what a single structure does. A structure above it holds instances of models, and meshes that were added later, as
- * instances that stand where they are. It is small, and made anew whenever something in it moves. Meshes that were
- * added together are built together; parts grow by joining, so that there are few. A mesh that is removed costs the
- * part that it lies in.
+ * what a single structure does. Bodies of lamps are traced next (bodies.c). A structure above it holds instances of
+ * models, and meshes that were added later, as instances that stand where they are. It is small, and made anew whenever
+ * something in it moves. Meshes that were added together are built together; parts grow by joining, so that there are
+ * few. A mesh that is removed costs the part that it lies in.
  *
  * Robust structures hold the corners of their triangles, so the scene's arrays are read by builds only, and may move
  * afterwards. */
@@ -49,6 +49,8 @@ void noc_embree_release_parts(embree_structure *s) {
     release_generation(&s->past);
     release_parts(&s->world);
     release_parts(&s->models);
+    if (s->bodies)
+        rtcReleaseScene(s->bodies);
 }
 
 static bool no_memory(embree_structure *s) {
@@ -56,7 +58,7 @@ static bool no_memory(embree_structure *s) {
     return false;
 }
 
-static RTCScene new_scene(embree_structure *s) {
+RTCScene noc_embree_new_scene(embree_structure *s) {
     RTCScene rtc = rtcNewScene(s->device->device);
     if (!rtc) {
         noc_embree_fail(s, rtcGetDeviceError(s->device->device), "no scene");
@@ -94,7 +96,7 @@ static bool attach_triangles(embree_structure *s, embree_part *part, embree_laye
 static bool build_layer(embree_structure *s, uint32_t model, embree_part *part, embree_layer layer) {
     const noc_scene *scene = s->scene;
     size_t first = 0, end = 0;
-    if (!(part->rtc[layer] = new_scene(s)))
+    if (!(part->rtc[layer] = noc_embree_new_scene(s)))
         return false;
     for (size_t i = part->of.first_mesh; i < part->of.end_mesh; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
@@ -175,11 +177,12 @@ static bool make_world(embree_structure *s, embree_parts *out) {
     return ok;
 }
 
-/* The structure of a model, built when an instance first shows it; NULL where that fails. */
+/* The structure of a model, built when an instance or body first shows it; NULL where that fails. */
 static embree_part *part_of_model(embree_structure *s, uint32_t model) {
     embree_part **slot = &s->models.data[model - 1];
+    const noc_scene_model *m = &s->scene->models.data[model - 1];
     if (!*slot)
-        *slot = make_part(s, model, 0, s->scene->meshes.len);
+        *slot = make_part(s, model, m->first_mesh, m->end_mesh ? m->end_mesh : s->scene->meshes.len);
     return *slot;
 }
 
@@ -206,7 +209,7 @@ static bool add_above(embree_structure *s, embree_generation *g, embree_layer la
 static bool make_top(embree_structure *s, const embree_parts *world, embree_layer layer, embree_generation *g) {
     static const float standing[12] = { [0] = 1, [5] = 1, [10] = 1 };
     const noc_scene *scene = s->scene;
-    bool ok = (g->top[layer] = new_scene(s)) != NULL;
+    bool ok = (g->top[layer] = noc_embree_new_scene(s)) != NULL;
     for (size_t i = 1; ok && i < world->len; i++)
         ok = add_above(s, g, layer, world->data[i], NO_INSTANCE, standing);
     for (size_t i = 0; ok && i < scene->instances.len; i++) {
@@ -224,8 +227,8 @@ static bool make_top(embree_structure *s, const embree_parts *world, embree_laye
 }
 
 static bool has_instances(const noc_scene *scene) {
-    for (size_t i = 0; i < scene->models.len; i++)
-        if (scene->models.data[i].instances)
+    for (size_t i = 0; i < scene->instances.len; i++)
+        if (scene->instances.data[i].model)
             return true;
     return false;
 }
@@ -234,12 +237,31 @@ static bool make_generation(embree_structure *s, const embree_parts *world, embr
     g->base = held(world->data[0]);
     if (world->len == 1 && !has_instances(s->scene))
         return true;
+    return make_top(s, world, LAYER_SOLID, g) && make_top(s, world, LAYER_THROUGH, g);
+}
+
+static bool make_bodies(embree_structure *s) {
+    const noc_scene *scene = s->scene;
+    if (s->bodies || !scene->bodies.len)
+        return true;
+    for (size_t i = 0; i < scene->bodies.len; i++)
+        if (!part_of_model(s, scene->bodies.data[i].model))
+            return false;
+    if (noc_embree_build_bodies(s))
+        return true;
+    if (s->bodies)
+        rtcReleaseScene(s->bodies);
+    s->bodies = NULL;
+    return false;
+}
+
+static bool fit_models(embree_structure *s) {
     size_t models = s->scene->models.len;
     if (!array_reserve(&s->models, models))
         return no_memory(s);
     while (s->models.len < models)
         s->models.data[s->models.len++] = NULL;
-    return make_top(s, world, LAYER_SOLID, g) && make_top(s, world, LAYER_THROUGH, g);
+    return true;
 }
 
 noc_status noc_embree_follow(embree_structure *s) {
@@ -248,7 +270,7 @@ noc_status noc_embree_follow(embree_structure *s) {
     s->failed = NOC_OK;
     atomic_store(&s->refused, false);
     bool ok = noc_embree_room(s->device->threads, 0) || no_memory(s);
-    if (!ok || !make_world(s, &world) || !make_generation(s, &world, &made)) {
+    if (!ok || !make_world(s, &world) || !fit_models(s) || !make_bodies(s) || !make_generation(s, &world, &made)) {
         release_generation(&made);
         release_parts(&world);
         return s->failed;

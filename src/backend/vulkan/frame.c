@@ -146,6 +146,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .light_colours = v->views.of.light_colours,
         .by_power = frame->plan->candidates == NOC_CANDIDATES_POWER,
         .light_count = (uint32_t)v->scene->lights.len,
+        .triangle_count = (uint32_t)v->scene->triangle_light.len,
         .textured = v->scene->texels.len > 0 && v->scene->uv.len > 0,
         .weakens = v->scene->lets_through,
         .instanced = b->instance.bytes > 0,

@@ -153,6 +153,14 @@ static void count_in_floats(float (*rays)[BLOCK], size_t blocks) {
         }
 }
 
+/* Triangles of bodies come as the bodies' numbers behind those of all triangles. */
+static void note_triangle(const vk_view *v, uint32_t seen, size_t block, int lane) {
+    uint32_t triangles = (uint32_t)v->scene->triangle_light.len, body = seen - triangles;
+    bool world = seen < triangles;
+    noc_views_note_triangle(&v->views.of, v->scene, world ? seen : 0, world ? NO_INSTANCE : NOC_BODIES + body, block,
+                            lane);
+}
+
 /* What passes of the CPU backend note while they run. */
 static noc_status read_gathered(vk_view *v) {
     vk_views *w = &v->views;
@@ -169,7 +177,7 @@ static noc_status read_gathered(vk_view *v) {
     for (size_t i = 0; i < blocks_of(&v->b) && status == NOC_OK; i++)
         for (int l = 0; l < BLOCK; l++)
             if (w->triangle[i][l] != VK_NO_TRIANGLE)
-                noc_views_note_triangle(&w->of, v->scene, w->triangle[i][l], i, l);
+                note_triangle(v, w->triangle[i][l], i, l);
     return status;
 }
 

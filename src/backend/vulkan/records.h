@@ -48,8 +48,8 @@ struct vk_pane_record {
     ADDRESS(Words, image_places)  /* of each material the place of its texture + 1; 0: none */                         \
     ADDRESS(Words, image_corners) /* 2 floats a vertex as bits; 0xffffffff: its mesh has none */                       \
     ADDRESS(Panes, panes)         /* of each material; none: no surface lets light through */                          \
-    ADDRESS(Instances, instances)                                                                                      \
-    ADDRESS(Backs, backs) /* of each instance */                                                                       \
+    ADDRESS(Instances, instances) /* bodies of lamps, then instances */                                                \
+    ADDRESS(Backs, backs)         /* of each instance */                                                               \
     ADDRESS(Words, instance_lights)                                                                                    \
     ADDRESS(Entries, entries)                                                                                          \
     ADDRESS(Words, alias)                                                                                              \
@@ -92,6 +92,7 @@ struct vk_pane_record {
     ADDRESS(Floats, emitter_labels) /* of each light */                                                                \
     ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
     WORD(uint32_t, light_count)                                                                                        \
+    WORD(uint32_t, triangle_count)                                                                                     \
     WORD(uint32_t, textured)  /* 1: materials have textures, and meshes places in them */                              \
     WORD(uint32_t, weakens)   /* 1: light is weakened by `through` */                                                  \
     WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
@@ -144,8 +145,8 @@ struct vk_pane_record {
 /* An entry of the TLAS: what its gl_InstanceCustomIndexEXT stands for. */
 struct vk_entry {
     uint64_t order;    /* address of the scene's triangle numbers, by gl_PrimitiveID */
-    uint32_t instance; /* 0xffffffff: the world */
-    uint32_t unused;
+    uint32_t instance; /* whose motion is known; 0xffffffff: the world, and bodies of lamps */
+    uint32_t placed;   /* record of the instance or body; 0xffffffff: the world */
 };
 
 typedef struct vk_instance_record vk_instance_record;

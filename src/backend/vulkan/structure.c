@@ -119,7 +119,9 @@ static noc_status part_of_model(vk_world *w, uint32_t model, vk_part **out) {
     while (s->models.len < w->scene->models.len)
         s->models.data[s->models.len++] = NULL;
     vk_part **slot = &s->models.data[model - 1];
-    noc_status status = *slot ? NOC_OK : make_part(w, model, 0, w->scene->meshes.len, slot);
+    const noc_scene_model *m = &w->scene->models.data[model - 1];
+    noc_status status =
+        *slot ? NOC_OK : make_part(w, model, m->first_mesh, m->end_mesh ? m->end_mesh : w->scene->meshes.len, slot);
     *out = *slot;
     return status;
 }
@@ -138,7 +140,7 @@ static void free_top(vk_device *d, top *t) {
     release_parts(d, &t->held);
 }
 
-static bool add_layer(top *t, const vk_blas_list *list, uint32_t mask, uint32_t instance, const float transform[12]) {
+static bool add_layer(top *t, const vk_blas_list *list, uint32_t mask, vk_entry entry, const float transform[12]) {
     for (size_t i = 0; i < list->len; i++) {
         const vk_blas *b = &list->data[i];
         VkAccelerationStructureInstanceKHR in = { .instanceCustomIndex = (uint32_t)t->entries.len & 0xffffff,
@@ -146,20 +148,34 @@ static bool add_layer(top *t, const vk_blas_list *list, uint32_t mask, uint32_t 
                                                   .flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR,
                                                   .accelerationStructureReference = b->address };
         memcpy(in.transform.matrix, transform, sizeof(in.transform.matrix));
-        vk_entry entry = { noc_vk_piece_address(&b->order), instance, 0 };
+        entry.order = noc_vk_piece_address(&b->order);
         if (!array_push(&t->instances, in) || !array_push(&t->entries, entry))
             return false;
     }
     return true;
 }
 
-static bool add_part(top *t, vk_part *part, uint32_t instance, const float transform[12]) {
-    if (!add_layer(t, &part->blas[VK_LAYER_SOLID], VK_MASK_SOLID, instance, transform) ||
-        !add_layer(t, &part->blas[VK_LAYER_THROUGH], VK_MASK_THROUGH, instance, transform) ||
-        !array_push(&t->held, part))
+static bool add_part(top *t, vk_part *part, vk_entry entry, const float transform[12]) {
+    if (!add_layer(t, &part->blas[VK_LAYER_SOLID], VK_MASK_SOLID, entry, transform) ||
+        !add_layer(t, &part->blas[VK_LAYER_THROUGH], VK_MASK_THROUGH, entry, transform) || !array_push(&t->held, part))
         return false;
     held(part);
     return true;
+}
+
+static noc_status gather_bodies(vk_world *w, top *t) {
+    const noc_scene *scene = w->scene;
+    for (size_t i = 0; i < scene->bodies.len; i++) {
+        vk_part *part = NULL;
+        float m[12];
+        noc_body_transform(&scene->bodies.data[i], m);
+        noc_status status = part_of_model(w, scene->bodies.data[i].model, &part);
+        if (status != NOC_OK)
+            return status;
+        if (!add_part(t, part, (vk_entry){ 0, NO_INSTANCE, (uint32_t)i }, m))
+            return noc_no_memory(w->log, "vulkan");
+    }
+    return NOC_OK;
 }
 
 static noc_status gather_top(vk_world *w, const vk_parts *world, top *t) {
@@ -168,7 +184,9 @@ static noc_status gather_top(vk_world *w, const vk_parts *world, top *t) {
     noc_status status = NOC_OK;
     bool ok = true;
     for (size_t i = 0; ok && i < world->len; i++)
-        ok = add_part(t, world->data[i], UINT32_MAX, standing);
+        ok = add_part(t, world->data[i], (vk_entry){ 0, NO_INSTANCE, NO_INSTANCE }, standing);
+    if (ok && (status = gather_bodies(w, t)) != NOC_OK)
+        return status;
     for (size_t i = 0; ok && i < scene->instances.len; i++) {
         const noc_scene_instance *in = &scene->instances.data[i];
         vk_part *part = NULL;
@@ -176,7 +194,7 @@ static noc_status gather_top(vk_world *w, const vk_parts *world, top *t) {
             continue;
         if ((status = part_of_model(w, in->model, &part)) != NOC_OK)
             return status;
-        ok = add_part(t, part, (uint32_t)i, in->transform);
+        ok = add_part(t, part, (vk_entry){ 0, (uint32_t)i, (uint32_t)(scene->bodies.len + i) }, in->transform);
     }
     if (!ok)
         return noc_no_memory(w->log, "vulkan");

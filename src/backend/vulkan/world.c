@@ -224,24 +224,33 @@ static noc_status follow_environment(vk_world *w) {
 
 /* ---- instances ---- */
 
-/* Transforms, and the lights' numbers of all instances, one after the other. */
+/* Transforms, and the lights' numbers of all bodies and instances, one after the other. */
 static noc_status follow_instances(vk_world *w) {
     const noc_scene *s = w->scene;
-    size_t count = s->instances.len, lights = 0;
+    size_t bodies = s->bodies.len, count = bodies + s->instances.len, lights = 0;
     if (!count || (w->filled && w->seen.instances == s->versions.instances && w->seen.lights == s->versions.lights))
         return NOC_OK;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < bodies; i++)
+        lights += s->models.data[s->bodies.data[i].model - 1].shown;
+    for (size_t i = 0; i < s->instances.len; i++)
         if (s->instances.data[i].model)
             lights += s->models.data[s->instances.data[i].model - 1].lights.len;
     vk_instance_record *records = noc_calloc(count, sizeof(*records));
     uint32_t *numbers = noc_calloc(lights + 1, sizeof(*numbers));
     bool ok = records && numbers;
     lights = 0;
-    for (size_t i = 0; ok && i < count; i++) {
+    for (size_t i = 0; ok && i < bodies; i++) {
+        const noc_scene_body *b = &s->bodies.data[i];
+        noc_body_transform(b, records[i].transform.m);
+        records[i].lights = (uint32_t)lights;
+        for (uint32_t k = 0; k < s->models.data[b->model - 1].shown; k++)
+            numbers[lights++] = b->light + k;
+    }
+    for (size_t i = 0; ok && i < s->instances.len; i++) {
         const noc_scene_instance *in = &s->instances.data[i];
         size_t n = in->model ? s->models.data[in->model - 1].lights.len : 0;
-        memcpy(records[i].transform.m, in->transform, sizeof(in->transform));
-        records[i].lights = (uint32_t)lights;
+        memcpy(records[bodies + i].transform.m, in->transform, sizeof(in->transform));
+        records[bodies + i].lights = (uint32_t)lights;
         if (n)
             memcpy(numbers + lights, in->lights, n * sizeof(*numbers));
         lights += n;

@@ -52,7 +52,7 @@ ARRAY(Backs, placing_back)
 struct tlas_entry {
     Words order; /* the scene's triangle numbers, by gl_PrimitiveID */
     uint instance;
-    uint unused;
+    uint placed;
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Entries { tlas_entry at[]; };
 ARRAY(SurfaceBlocks, gblock)

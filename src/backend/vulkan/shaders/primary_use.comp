@@ -41,12 +41,14 @@ void main() {
         h.material = HERE.triangle_material.at[triangle];
         h.light = HERE.triangle_light.at[triangle];
         instance = e.instance;
-        bool placed = instance != NO_INSTANCE;
+        bool placed = e.placed != NO_INSTANCE;
         placement m;
         if (placed) {
-            m = placement_of_rows(HERE.instances.at[instance].transform);
+            m = placement_of_rows(HERE.instances.at[e.placed].transform);
             if (h.light != NO_LIGHT)
-                h.light = HERE.instance_lights.at[HERE.instances.at[instance].lights + h.light];
+                h.light = HERE.instance_lights.at[HERE.instances.at[e.placed].lights + h.light];
+            if (instance == NO_INSTANCE)
+                triangle = HERE.triangle_count + e.placed; /* a body, for views */
         }
         r = receiver_of_hit(h, placed, m);
         if (HERE.textured != 0u)
