@@ -442,9 +442,9 @@ void cli_print_summary(const render_job *job) {
         cli_print_sky("  sky       ", args->render.sky);
     print_lamps(job->report, &args->import);
     if (scene->maintenance != 1)
-        printf(
-            "  upkeep    lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
-            scene->maintenance);
+        printf("  upkeep    lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of "
+               "theirs\n",
+               scene->maintenance);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],

@@ -73,7 +73,8 @@ static noc_estimate mean_of(const spread *s) {
     return (noc_estimate){ mean, sqrt(squares / (RANKING_BATCHES * (RANKING_BATCHES - 1.0))) };
 }
 
-/* The ratio of two means, NaN of nothing, and its error by the differences from it: batches that are bright in both say nothing. */
+/* The ratio of two means, NaN of nothing, and its error by the differences from it: batches that are bright in both say
+ * nothing. */
 static noc_estimate ratio_of(const spread *s, const spread *of) {
     double whole = mean_of(of).value;
     if (!(whole > 0))

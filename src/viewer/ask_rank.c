@@ -118,8 +118,8 @@ static char *csv_of(const asker *a, noc_ranking *ranking, const json_t *about) {
     size_t class_count = get_classes(ranking, about, classes);
     noc_influence_row *rows = calloc(sum.emitters + 1, sizeof(*rows));
     if (rows && !noc_ranking_get(ranking, rows, sum.emitters, &found, &sum))
-        text =
-            noc_influence_csv(world_scene(a->world), world_report(a->world), rows, found, &sum, classes, class_count, NULL);
+        text = noc_influence_csv(world_scene(a->world), world_report(a->world), rows, found, &sum, classes, class_count,
+                                 NULL);
     free(rows);
     return text;
 }

@@ -123,7 +123,8 @@ assert near(b['windows'], a['windows'], .06), (a['windows'], b['windows'])
 PY
 python3 kept.py
 result $? "a maintenance factor scales lamps alone"
-ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q '^lamps give 0.8 of their flux (--maintenance); meshes that shine, windows and cars all of theirs$' out &&
+upkeep='lamps give 0.8 of their flux (--maintenance); meshes that shine, windows and cars all of theirs'
+ask --region "street:Well Lane" --maintenance 0.8 --csv kept.csv && grep -q "^$upkeep\$" out &&
     head -n 1 kept.csv | grep -q ',maintenance,region$' && [ "$(grep -c ',0.8,"street:Well Lane"$' kept.csv)" = 7 ]
 result $? "and each answer says so"
 run influence builtin:city -q --region pixel:40,50 --width 64 --height 64 --time .1 && head -n 1 out >place1
@@ -186,7 +187,8 @@ assert [r['region'][:6] for r in rows if r['kind'] == 'all'] == ['point:', 'stre
 result $? "two regions in CSV are told apart by a column"
 
 # A place that is dark says why; shares of no light, and the luminance of a place, are none.
-run influence builtin:city -q --region point:10,10,-0.3 --csv dark.csv --sky 0 && grep -q 'below the ground by 0.4 m' out &&
+run influence builtin:city -q --region point:10,10,-0.3 --csv dark.csv --sky 0 &&
+    grep -q 'below the ground by 0.4 m' out &&
     python3 -c "
 import csv
 all = [r for r in csv.DictReader(open('dark.csv')) if r['kind'] == 'all'][0]
