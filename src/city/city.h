@@ -173,6 +173,8 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
 city_ground *city_ground_of_buildings(noc_scene *scene);
 /* Meshes before that one have a ground of their own: their walls end where they end. */
 void city_ground_keep(city_ground *g, size_t first_mesh);
+/* At how many points of triangles the ground was looked at: at most 100,000,000 and three a triangle. */
+size_t city_ground_points(const city_ground *g);
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
 double city_ground_height(const city_ground *g, double x, double y, double *distance);
 void city_ground_lay(city_ground *g, const double *points, size_t count); /* through those that have a height */

@@ -14,6 +14,7 @@ typedef struct ground_field {
     float *away;   /* m to the nearest cell that the city tells the height of; INFINITY where it tells none */
     bool *fixed;
     double *scratch; /* 2 * nx * ny, of whoever is at work */
+    size_t points;   /* of triangles that were looked at */
 } ground_field;
 
 /* Height of the mesh at (x, y). */

@@ -13,10 +13,11 @@
 
 #define CELL 6.0 /* m */
 #define MAX_SIDE 256
-#define UNDER 0.02   /* m below what stands on it */
-#define LEVEL 0.05   /* m: less than this is flat */
-#define FOOT 1.5     /* m: what begins higher over the lowest in its cell is no foot */
-#define STEEPEST 0.6 /* what rises faster from its surroundings is a dormer or a tower, not a foot */
+#define UNDER 0.02      /* m below what stands on it */
+#define LEVEL 0.05      /* m: less than this is flat */
+#define FOOT 1.5        /* m: what begins higher over the lowest in its cell is no foot */
+#define MOST_POINTS 1e8 /* of all triangles, at which the ground is looked at; the least of each come on top */
+#define STEEPEST 0.6    /* what rises faster from its surroundings is a dormer or a tower, not a foot */
 
 typedef ground_field field;
 
@@ -84,17 +85,24 @@ static void lower(field *f, double x, double y, double z, bool street) {
         f->street[i] = (float)z;
 }
 
-/* Corners and, where a triangle is larger than a cell, points on it. */
-static void add_triangle(field *f, const float *a, const float *b, const float *c, bool street) {
+/* Steps in which a triangle's sides are looked at: half a cell. */
+static int steps_of(const field *f, const noc_scene *scene, size_t t) {
+    const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     double span =
         NOC_MAX(hypot((double)b[0] - a[0], (double)b[1] - a[1]), hypot((double)c[0] - a[0], (double)c[1] - a[1]));
-    int n = (int)NOC_CLAMP(2 * span / NOC_MIN(f->step[0], f->step[1]), 1, 600);
+    return (int)NOC_CLAMP(2 * span / NOC_MIN(f->step[0], f->step[1]), 1, 600);
+}
+
+/* Corners and, where a triangle is larger than a cell, points on it. */
+static void add_triangle(field *f, const noc_scene *scene, size_t t, int n, bool street) {
+    const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     for (int i = 0; i <= n; i++)
         for (int j = 0; i + j <= n; j++) {
             double u = (double)i / n, v = (double)j / n, w = 1 - u - v;
             lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2],
                   street);
         }
+    f->points += (size_t)(n + 1) * (size_t)(n + 2) / 2;
 }
 
 static int compare_floats(const void *a, const void *b) {
@@ -418,6 +426,35 @@ static bool tells(noc_class cls, bool land, bool bases, bool streets) {
     return bases ? is_base(cls) : is_thing(cls);
 }
 
+/* By how much the steps are fewer than half a cell asks for, so that those of all triangles together are no more than
+ * MOST_POINTS: many large ones lie over one another, or are long and thin. 1 in a city as it is. */
+static double share_of_steps(const city_ground *g, bool bases) {
+    const noc_scene *scene = g->scene;
+    double points = 0;
+    EACH_BASE(scene, t)
+    if (tells(class_of(scene, t), scene->meshes.data[mesh_].land, bases, g->streets)) {
+        double n = steps_of(&g->f, scene, t);
+        points += (n + 1) * (n + 2) / 2;
+    }
+    return points > MOST_POINTS ? sqrt(MOST_POINTS / points) : 1;
+}
+
+/* Returns whether there is one that tells a height. */
+static bool add_triangles(city_ground *g) {
+    const noc_scene *scene = g->scene;
+    bool bases = has_bases(scene), any = false;
+    double share = share_of_steps(g, bases);
+    EACH_BASE(scene, t) {
+        noc_class cls = class_of(scene, t);
+        if (!tells(cls, scene->meshes.data[mesh_].land, bases, g->streets))
+            continue;
+        int n = (int)NOC_MAX(share * steps_of(&g->f, scene, t), 1);
+        add_triangle(&g->f, scene, t, n, is_street(cls));
+        any = true;
+    }
+    return any;
+}
+
 static city_ground *start(noc_scene *scene, const double *points, size_t count, bool streets) {
     if ((!scene->indices.len && !count) || scene->committed)
         return NULL;
@@ -430,14 +467,7 @@ static city_ground *start(noc_scene *scene, const double *points, size_t count, 
     }
     g->scene = scene;
     g->streets = streets;
-    bool bases = has_bases(scene), any = false;
-    EACH_BASE(scene, t) {
-        noc_class cls = class_of(scene, t);
-        if (!tells(cls, scene->meshes.data[mesh_].land, bases, streets))
-            continue;
-        add_triangle(&g->f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2), is_street(cls));
-        any = true;
-    }
+    bool any = add_triangles(g);
     for (size_t i = 0; i < count && !any; i++) /* nothing else tells a height */
         if (isfinite(points[3 * i + 2]))
             lower(&g->f, points[3 * i], points[3 * i + 1], points[3 * i + 2], false);
@@ -464,6 +494,8 @@ double city_ground_height(const city_ground *g, double x, double y, double *dist
     *distance = field_distance(&g->f, x, y);
     return field_height(&g->f, x, y);
 }
+
+size_t city_ground_points(const city_ground *g) { return g->f.points; }
 
 void city_ground_keep(city_ground *g, size_t first_mesh) { g->first_mesh = first_mesh; }
 

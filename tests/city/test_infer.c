@@ -162,11 +162,39 @@ static void test_add_ground(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* A stack of `count` planes, each a centimetre lower than the one before it: at how many points the ground under it is
+ * looked at. */
+static double points_of_stack(int count) {
+    noc_scene *scene = noc_scene_create(NULL);
+    for (int i = 0; i < count; i++)
+        add_plane(scene, NOC_CLASS_ROAD, 0, 0, 2000, 2000, 100 - .01 * i, 0);
+    city_ground *g = city_ground_start(scene, NULL, 0);
+    assert_non_null(g);
+    double points = (double)city_ground_points(g), away;
+    assert_float_equal(city_ground_height(g, 1000, 900, &away), 100 - .01 * (count - 1), 1e-3);
+    assert_float_equal(away, 0, 1e-3);
+    city_ground_lay(g, NULL, 0);
+    noc_scene_destroy(scene);
+    return points;
+}
+
+/* However many large triangles lie over one another, the points at which they are looked at are bounded; few triangles
+ * are looked at twice a cell. */
+static void test_ground_is_bounded(void **state) {
+    (void)state;
+    double one = points_of_stack(1);
+    assert_true(one > 2 * 400 * 400 / 2);
+    assert_float_equal(points_of_stack(100), 100 * one, .5);
+    double bounded = points_of_stack(2000);
+    print_message("# %.0f points of one, %.0f of 2000\n", one, bounded);
+    assert_true(2000 * one > 2e8 && bounded < 1.02e8);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_infer_cancelled), cmocka_unit_test(test_infer_roads),
         cmocka_unit_test(test_infer_buildings), cmocka_unit_test(test_skirts),
-        cmocka_unit_test(test_add_ground),
+        cmocka_unit_test(test_add_ground),      cmocka_unit_test(test_ground_is_bounded),
     };
     return cmocka_run_group_tests_name("city/infer", tests, NULL, NULL);
 }
