@@ -97,6 +97,8 @@ static double lies_there(const noc_scene *scene, uint32_t classes, double x, dou
 static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach,
                     double mean[2]) {
     double sum[2], few[DIRECTIONS][2], many[FINE_DIRECTIONS][2];
+    if (!noc_scene_has_classes(scene, classes)) /* lamps of a map without a city: no rays */
+        return false;
     directions(DIRECTIONS, few);
     for (double r = 1; r <= reach; r += 1) {
         if (!(lies_there(scene, classes, x, y, min_z, r, DIRECTIONS, few, sum) > .1))

@@ -420,6 +420,14 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
     return true;
 }
 
+bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes) {
+    const struct noc_ground *g = scene->triangle_light.len ? ground_of(scene) : NULL;
+    uint32_t there = scene->bodies.len ? 1u << NOC_CLASS_LAMP : 0;
+    for (int level = 0; g && level < LEVELS; level++)
+        there |= g->classes[level];
+    return there & classes;
+}
+
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
     vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .best = -DBL_MAX };
     cast(&r);

@@ -83,6 +83,8 @@ static void test_vertical_rays(void **state) {
     l.direction = 0;
     l.height = 8;
     assert_int_equal(city_add_lamp(s, &l, &defaults, false, NULL), 1);
+    assert_true(noc_scene_has_classes(s, 1u << NOC_CLASS_LAMP) && noc_scene_has_classes(s, 1u << NOC_CLASS_TERRAIN));
+    assert_false(noc_scene_has_classes(s, 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_WALL));
     assert_true(noc_scene_top(s, 10, 20, &z));
     assert_float_equal(z, 2 + 8 + .08, 1e-5); /* the post's cap */
     assert_true(noc_scene_highest(s, 1u << NOC_CLASS_LAMP, 10, 21.2, &z));
