@@ -418,10 +418,14 @@ static noc_status finish_lamps(importer *im) {
         status = ask_roads(im);
     if (!status)
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
+    if (!status && scene->no_memory) /* for the ground, and said so */
+        status = NOC_ERR_MEMORY;
     if (!status)
         status = road_lamps_raise(im);
     if (!status)
         status = roads_pave(im); /* lamps stand on them */
+    if (!status && scene->no_memory)
+        status = NOC_ERR_MEMORY;
     if (!status)
         status = roads_name(im);
     if (status)
