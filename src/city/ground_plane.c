@@ -444,6 +444,10 @@ static bool add_triangles(city_ground *g) {
     const noc_scene *scene = g->scene;
     bool bases = has_bases(scene), any = false;
     double share = share_of_steps(g, bases);
+    if (share < 1)
+        noc_warn(scene->log,
+                 "ground: so many surfaces lie over one another that it is found in steps %.1f times as wide",
+                 1 / share);
     EACH_BASE(scene, t) {
         noc_class cls = class_of(scene, t);
         if (!tells(cls, scene->meshes.data[mesh_].land, bases, g->streets))

@@ -1,6 +1,8 @@
 /* Lamps placed by a rule, and a ground for cities without. */
 #include "lamp_scene.h"
 
+#include "../told.h"
+
 static double nearest_pair(const noc_scene *scene) {
     double best = INFINITY;
     for (size_t i = 0; i < scene->lights.len; i++)
@@ -165,7 +167,9 @@ static void test_add_ground(void **state) {
 /* A stack of `count` planes, each a centimetre lower than the one before it: at how many points the ground under it is
  * looked at. */
 static double points_of_stack(int count) {
-    noc_scene *scene = noc_scene_create(NULL);
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
+    noc_scene *scene = noc_scene_create(log);
+    *told = 0;
     for (int i = 0; i < count; i++)
         add_plane(scene, NOC_CLASS_ROAD, 0, 0, 2000, 2000, 100 - .01 * i, 0);
     city_ground *g = city_ground_start(scene, NULL, 0);
@@ -175,6 +179,7 @@ static double points_of_stack(int count) {
     assert_float_equal(away, 0, 1e-3);
     city_ground_lay(g, NULL, 0);
     noc_scene_destroy(scene);
+    noc_log_destroy(log);
     return points;
 }
 
@@ -185,9 +190,11 @@ static void test_ground_is_bounded(void **state) {
     double one = points_of_stack(1);
     assert_true(one > 2 * 400 * 400 / 2);
     assert_float_equal(points_of_stack(100), 100 * one, .5);
+    assert_string_equal(told, "");
     double bounded = points_of_stack(2000);
     print_message("# %.0f points of one, %.0f of 2000\n", one, bounded);
     assert_true(2000 * one > 2e8 && bounded < 1.02e8);
+    assert_non_null(strstr(told, "it is found in steps 2."));
 }
 
 int main(void) {
