@@ -179,7 +179,7 @@ static size_t drive(twins *t, noc_scene *scene, const noc_camera *camera, const 
         const frame_buffers *b = &cpu_of(t)->b;
         size_t before = seen;
         for (size_t i = 0; i < (size_t)b->blocks_x * b->blocks_y * BLOCK; i++)
-            seen += b->instance[0][i] != NO_INSTANCE;
+            seen += b->instance[i / BLOCK][i % BLOCK] != NO_INSTANCE;
         assert_true(seen > before);
     }
     return seen;
