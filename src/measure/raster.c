@@ -68,7 +68,7 @@ static noc_status check(const noc_scene *scene, const noc_raster_params *p, doub
         return noc_error(log, NOC_ERR_ARGUMENT, "measure: a pixel of %g is none", p->step);
     if (!(fabs(p->height) < 1e4))
         return noc_error(log, NOC_ERR_ARGUMENT, "measure: %g m over the ground is not near it", p->height);
-    bool all = !p->extent[0] && !p->extent[1] && !p->extent[2] && !p->extent[3];
+    bool all = p->extent[0] == 0 && p->extent[1] == 0 && p->extent[2] == 0 && p->extent[3] == 0;
     memcpy(extent, p->extent, 4 * sizeof(*extent));
     noc_status status = all ? find_extent(scene, p, extent) : NOC_OK;
     if (status != NOC_OK)

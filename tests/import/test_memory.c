@@ -7,6 +7,7 @@
 
 #include "geo/geo.h"
 #include "import/import.h"
+#include "import/lamps/tags.h"
 #include "import/load/load.h"
 #include "import/remote/remote.h"
 #include <nocturne/nocturne.h>
@@ -445,6 +446,26 @@ static void json_has_memory_aside(void **state) {
     assert_in_range(bytes_in_use() - b.in_use, 0, 1 << 16);
 }
 
+/* Reading goes on after a value that there was no memory to count; the next lamp may have the same one. */
+static void values_that_are_not_understood(void **state) {
+    (void)state;
+    bool reached = true;
+    for (uint64_t n = 1; reached; n++) {
+        lamp_unread *u = lamp_unread_create();
+        assert_non_null(u);
+        begin_refusal(n, false);
+        bool counted = lamp_unread_add(u, "source", "glow-worm", "a");
+        reached = end_refusal();
+        assert_true(counted != reached);
+        assert_true(lamp_unread_add(u, "source", "glow-worm", "b"));
+        assert_true(lamp_unread_add(u, "source", "will-o'-the-wisp", "c"));
+        geo_issues *issues = geo_issues_create();
+        lamp_unread_tell(u, issues);
+        geo_issues_destroy(issues);
+        lamp_unread_destroy(u);
+    }
+}
+
 static int make_inputs(void **state) {
     char command[900];
     snprintf(folder, sizeof(folder), "/tmp/noc-memory-%ld", (long)getpid());
@@ -473,6 +494,7 @@ int main(void) {
         cmocka_unit_test(ply),
         cmocka_unit_test(obj),
         cmocka_unit_test(lamps),
+        cmocka_unit_test(values_that_are_not_understood),
         cmocka_unit_test(maps),
         cmocka_unit_test(places_of_a_scene),
         cmocka_unit_test(polygons),

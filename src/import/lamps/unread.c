@@ -46,8 +46,9 @@ bool lamp_unread_add(lamp_unread *u, const char *reason, const char *text, const
                           .text = arena_strdup(&u->arena, u->values.len < MOST_VALUES ? shown : "..."),
                           .id = arena_strdup(&u->arena, id) };
         at = u->values.len;
-        if (!v.text || !v.id || !map_put(&u->index, key, at, NULL) || !array_push(&u->values, v))
+        if (!v.text || !v.id || !array_reserve(&u->values, at + 1) || !map_put(&u->index, key, at, NULL))
             return false;
+        u->values.data[u->values.len++] = v; /* the index names no value that is not there */
     }
     u->values.data[at].count++;
     return true;
