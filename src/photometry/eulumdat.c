@@ -206,7 +206,7 @@ static noc_status read_grid(photometry_text *t, const ldt *h, photometry_grid *w
  * ever: the reading counts whose integral is nearer to the flux that the file states. */
 static const char *choose_reading(noc_profile *p, const ldt *h) {
     double stated = h->lumens * (h->lor > 0 ? h->lor / 100 : 1), per_klm = h->lumens / 1000, made = p->info.lumens;
-    if (!(stated > 0) || fabs(log(made * per_klm / stated)) >= fabs(log(made / stated)))
+    if (!(stated > PHOTOMETRY_LEAST) || fabs(log(made * per_klm / stated)) >= fabs(log(made / stated)))
         return "EULUMDAT, absolute";
     photometry_scale(p, per_klm);
     return "EULUMDAT, absolute in cd/klm";

@@ -26,6 +26,9 @@ struct noc_profile {
     noc_arena texts;
 };
 
+/* cd, lm: what is less is no light. Sums of it would lose their digits, as numbers end at 5e-324. */
+#define PHOTOMETRY_LEAST 1e-30
+
 /* profile.c. Both report. */
 noc_profile *photometry_new(noc_log *log, const char *name, const char *format);
 /* Takes the grid into the profile: its symmetry by its angles (noc_profile_create), its flux, peak and the rest of

@@ -319,7 +319,7 @@ noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, con
     }
     find_peak(p);
     info->lumens = p->own.cd.len ? photometry_grid_flux(&p->own) : noc_profile_flux(p, 0, 180, NAN);
-    if (!(info->peak > 0) || !(info->lumens > 0))
+    if (!(info->peak > PHOTOMETRY_LEAST) || !(info->lumens > PHOTOMETRY_LEAST))
         return noc_error(log, NOC_ERR_FORMAT, "%s%s: sends no light", name, place);
     return NOC_OK;
 }

@@ -319,19 +319,19 @@ static void test_absolute_eulumdat(void **state) {
     noc_profile_get_info(p, &info);
     double whole = info.lumens; /* of made_cd */
     noc_profile_destroy(p);
-    for (int i = 0; i < 4; i++) {
-        double off = i < 2 ? 1 : 1.03, lumens = whole * off;
+    for (int i = 0; i < 5; i++) { /* the last one states a flux that is none */
+        double off = i < 2 ? 1 : 1.03, lumens = i < 4 ? whole * off : 1e-320;
         m.len = 0;
-        put_eulumdat(&m, HALVES, i % 2 ? 1000 : lumens / off, 100); /* cd, or cd/klm of the lamps */
+        put_eulumdat(&m, HALVES, i % 2 || i == 4 ? 1000 : lumens / off, 100); /* cd, or cd/klm of the lamps */
         char *lamps = strstr(m.text, "\n1\nLED\n"), *rest = strdup(strchr(lamps + 8, '\n'));
         m.len = (size_t)(lamps - m.text);
         put(&m, "\n-1\nLED\n%.9g%s", lumens, rest);
         free(rest);
         p = read_made(&m);
         noc_profile_get_info(p, &info);
-        assert_string_equal(info.format, i % 2 ? "EULUMDAT, absolute" : "EULUMDAT, absolute in cd/klm");
-        double want = i % 2 ? whole : lumens;
-        if (fabs(info.lumens / want - 1) > 1e-5 || fabs(info.flux_error - (want / lumens - 1)) > 1e-5)
+        assert_string_equal(info.format, i % 2 || i == 4 ? "EULUMDAT, absolute" : "EULUMDAT, absolute in cd/klm");
+        double want = i % 2 || i == 4 ? whole : lumens;
+        if (fabs(info.lumens / want - 1) > 1e-5 || (i < 4 && fabs(info.flux_error - (want / lumens - 1)) > 1e-5))
             fail_msg("%d: %g lm, not %g", i, info.lumens, want);
         assert_true(fabs(noc_profile_intensity(p, 15, 40) / made_cd(HALVES, 15, 40) - want / whole) < 1e-5);
         noc_profile_destroy(p);
@@ -399,6 +399,7 @@ static void test_bad(void **state) {
         { "IESNA91\nTILT=NONE\n1 -1 1 3600 3600 1 2 0 0 0\n1 1 1\n0 90\n", "and 4194304 values" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 45\n1 1 1 1\n", "horizontal angles do not go" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n", "sends no light" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1e-320 1e-320\n", "sends no light" },
         { "IESNA91\nTILT=NONE\n1 -1 1 4000 4000 1 2 0 0 0\n1 1 1\n0 90\n", "planes of 4000 angles" },
         { "a\n1\n1\n1\n0\n2\n90\n", "bad:7: ends before" },
         { "a\n1\n3\n6\n0\n2\n0\n", "bad:7: ends before" },
