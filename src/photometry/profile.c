@@ -82,7 +82,8 @@ double photometry_grid_at(const photometry_grid *g, double h, double v) {
         return 0;
     size_t n = g->gamma.len;
     const double *a = g->cd.data + i * n + k, *b = g->cd.data + NOC_MIN(i + 1, g->c.len - 1) * n + k;
-    return (1 - s) * ((1 - t) * a[0] + t * a[1]) + s * ((1 - t) * b[0] + t * b[1]);
+    double cd = (1 - s) * ((1 - t) * a[0] + t * a[1]) + s * ((1 - t) * b[0] + t * b[1]);
+    return fmin(cd, fmax(fmax(a[0], a[1]), fmax(b[0], b[1]))); /* rounding makes no peak of its own */
 }
 
 /* Looks along the axis: right is C 0, up is C 90. In type A the horizontal angle turns around the upright pole, in B
