@@ -234,7 +234,7 @@ typedef struct noc_report_file {
     bool crs_overridden;       /* crs is noc_import_params.file_crs's, whatever the file names */
     uint64_t bytes;            /* as stored */
     uint64_t bytes_read;       /* after decompression */
-    double seconds;
+    double seconds;            /* that reading took; 0: of a built city, which does not keep it */
     bool has_extent;
     bool degrees;                        /* the extent's x and y are longitude and latitude */
     double extent_min[3], extent_max[3]; /* in the file's CRS, easting northing height (x y z) order */

@@ -47,6 +47,11 @@ run build city.yaml -o city.noct
 result "$status" "builds a city of a recipe"
 grep -q 'scene .* triangles, .* lights, .* windows' out
 result $? "and tells what is in it"
+for threads in 1 3; do
+    run build city.yaml -q --threads $threads -o again.noct
+    test "$status" = 0 && cmp -s city.noct again.noct
+    result $? "the same bytes, built again on $threads threads"
+done
 draw files.exr city.yaml
 draw built.exr city.noct
 same "a built city is the same picture" files.exr built.exr
