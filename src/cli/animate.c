@@ -43,6 +43,7 @@ static const noc_option animation_options[] = {
       "a film by ffmpeg, too; auto: where there is one" },
     { "overwrite", GROUP, NOC_OPTION_BOOL, offsetof(A, overwrite), 0, 1, NULL, "",
       "render pictures that are there, too, and replace files that are none of this animation" },
+    CLI_OPTION_PART(A, GROUP, part_text),
     { NULL },
 };
 #undef A
@@ -58,7 +59,8 @@ typedef struct animation {
     int pictures, segment, warm_up;
     char *film, *ffmpeg; /* NULL: none is made */
     bool filmed;         /* it is there */
-    bool *kept;          /* by picture: it is there already */
+    bool *kept;          /* by picture of this part: it is there already */
+    int mine;            /* pictures of this part */
     int kept_count, made;
     double frames, done; /* to render, and rendered */
     double began;        /* wall clock */
@@ -140,8 +142,8 @@ static int check_files(const render_args *args) {
     return status;
 }
 
-int cli_check_animation(const render_args *args) {
-    const animation_args *a = &args->animation;
+int cli_check_animation(render_args *args) {
+    animation_args *a = &args->animation;
     for (const noc_option *o = animation_options; o->name && !a->on; o++)
         if (cli_given(&args->common, o->name) && strcmp(o->name, "animate"))
             return cli_usage(&cli_render, "--%s is for --animate", o->name);
@@ -156,7 +158,8 @@ int cli_check_animation(const render_args *args) {
     if (args->frames > MOST_PICTURES)
         return cli_usage(&cli_render, "--frames: an animation has %d pictures at most", MOST_PICTURES);
     int status = check_path(args);
-    return status ? status : check_files(args);
+    status = status ? status : check_files(args);
+    return status ? status : cli_choose_part(&cli_render, &args->common, a->part_text, &a->part);
 }
 
 /* ---- the path ---- */
@@ -231,13 +234,28 @@ static void make_key(animation *a) {
 
 static char *tag_of(const animation *a, int picture) { return cli_format("%s/%d", a->key, picture + 1); }
 
+/* Segments are the items that parts share. */
+static bool is_mine(const animation *a, int picture) {
+    const cli_part *part = &a->args->part;
+    return picture / a->segment % part->count == part->number - 1;
+}
+
+/* Returns true if the file is this picture. *told, which the caller frees, is what it says it is. */
+static bool is_picture(const animation *a, int picture, const char *file, char **told) {
+    char *tag = tag_of(a, picture);
+    *told = NULL;
+    bool is = !noc_image_read_text(file, "animation", told, NULL) && *told && !strcmp(*told, tag);
+    free(tag);
+    return is;
+}
+
 /* A file that is there is this animation's picture, or in the way. */
 static noc_status look_at_picture(animation *a, int picture) {
-    char *file = cli_series_file(&a->series, picture + 1), *tag = tag_of(a, picture), *told = NULL;
+    char *file = cli_series_file(&a->series, picture + 1), *told = NULL;
     struct stat st;
     noc_status status = NOC_OK;
     if (!lstat(file, &st)) {
-        if (noc_image_read_text(file, "animation", &told, NULL) || !told || strcmp(told, tag)) {
+        if (!is_picture(a, picture, file, &told)) {
             cli_error("%s is there, and is %s: --overwrite replaces it", file,
                       told ? "of other options, another path or another scene" : "no picture of an animation");
             status = NOC_ERR_ARGUMENT;
@@ -247,7 +265,6 @@ static noc_status look_at_picture(animation *a, int picture) {
         }
     }
     free(told);
-    free(tag);
     free(file);
     return status;
 }
@@ -255,15 +272,38 @@ static noc_status look_at_picture(animation *a, int picture) {
 static noc_status look_at_pictures(animation *a) {
     noc_status status = NOC_OK;
     a->kept = cli_alloc((size_t)a->pictures * sizeof(*a->kept));
-    for (int i = 0; i < a->pictures && !a->args->overwrite && !status; i++)
-        status = cli_interrupted() ? NOC_ERR_CANCELLED : look_at_picture(a, i);
+    for (int i = 0; i < a->pictures && !status; i++) {
+        if (is_mine(a, i) && !a->args->overwrite)
+            status = cli_interrupted() ? NOC_ERR_CANCELLED : look_at_picture(a, i);
+    }
     return status;
+}
+
+/* Returns true if the pictures of all other parts are there. */
+static bool others_are_there(const animation *a) {
+    bool there = true;
+    for (int i = 0; i < a->pictures && there; i++) {
+        if (is_mine(a, i))
+            continue;
+        char *file = cli_series_file(&a->series, i + 1), *told;
+        there = is_picture(a, i, file, &told);
+        free(told);
+        free(file);
+    }
+    return there;
 }
 
 /* ---- the film ---- */
 
 #define FILM_COMMENT "Nocturne animation "
 static char *film_comment(const animation *a) { return cli_format(FILM_COMMENT "%s/%d", a->key, a->pictures); }
+
+static bool film_is_there(const animation *a) {
+    char *comment = film_comment(a);
+    bool there = cli_file_holds(a->film, comment);
+    free(comment);
+    return there;
+}
 
 /* One that is there and was not asked for by its name is replaced where it is such a film. */
 static void plan_film(animation *a) {
@@ -274,9 +314,7 @@ static void plan_film(animation *a) {
         return;
     a->film = only ? cli_format("%s", args->output) : cli_series_film(&a->series);
     a->ffmpeg = cli_find_ffmpeg();
-    char *comment = film_comment(a);
-    a->filmed = !a->args->overwrite && cli_file_holds(a->film, comment);
-    free(comment);
+    a->filmed = !a->args->overwrite && film_is_there(a);
     if (only || a->args->film == NOC_SWITCH_ON || stat(a->film, &st) || cli_file_holds(a->film, FILM_COMMENT))
         return;
     if (!args->common.quiet)
@@ -308,9 +346,17 @@ static void remove_pictures(const animation *a) {
     rmdir(a->series.prefix);
 }
 
+/* Of several parts the one that ends last makes it. Two that end at once may both make it, of the same pictures. */
 static noc_status make_film(animation *a) {
     if (!a->film || !a->ffmpeg || (a->filmed && !a->made))
         return NOC_OK;
+    bool shared = a->args->part.count > 1;
+    if (shared && (!others_are_there(a) || (!a->args->overwrite && film_is_there(a)))) {
+        a->filmed = film_is_there(a);
+        if (a->filmed && cli_is_film(a->job->args->output))
+            remove_pictures(a);
+        return NOC_OK;
+    }
     char *comment = film_comment(a);
     noc_status status = cli_make_film(a->ffmpeg, &a->series, a->pictures, a->args->fps, a->film, comment);
     free(comment);
@@ -343,7 +389,7 @@ static bool progress(void *user, const char *what, double done) {
     const animation *a = user;
     double share = (a->done + done) / a->frames, spent = cli_now() - a->began;
     cli_progress_show(share, share > 0 && spent > 0.5 ? spent / share - spent : -1, "picture %d of %d",
-                      a->kept_count + a->made + 1, a->pictures);
+                      a->kept_count + a->made + 1, a->mine);
     return !cli_interrupted();
 }
 
@@ -430,7 +476,7 @@ static noc_status render_segment(animation *a, int first, int last) {
 /* How far the segment that begins there is to be rendered; first: not at all. */
 static int segment_end(const animation *a, int first) {
     int end = first;
-    for (int i = first; i < a->pictures && i < first + a->segment; i++)
+    for (int i = first; is_mine(a, first) && i < a->pictures && i < first + a->segment; i++)
         end = a->kept[i] ? end : i + 1;
     return end;
 }
@@ -460,12 +506,19 @@ static void choose_segments(animation *a) {
     a->segment = a->args->segment ? a->args->segment : reuse || smooth ? SEGMENT : 1;
     int frames = smooth ? SMOOTH_WARM_UP : reuse ? (int)fmin(ceil(p->history), MOST_WARM_UP) : WARM_UP;
     a->warm_up = a->segment == 1 ? 0 : frames;
+    for (int i = 0; i < a->pictures; i++)
+        a->mine += is_mine(a, i);
 }
 
 static noc_status make_pictures(animation *a) {
     noc_status status = look_at_pictures(a);
-    if (status || a->kept_count == a->pictures || cli_interrupted())
+    if (status || a->kept_count == a->mine || cli_interrupted())
         return status;
+    /* another part may have made the film meanwhile, and removed its pictures */
+    if (cli_is_film(a->job->args->output) && !a->args->overwrite && film_is_there(a)) {
+        a->filmed = true;
+        return NOC_OK;
+    }
     status = make_folder(a);
     status = status ? status : cli_start_view(a->job);
     if (!status && a->job->args->display.auto_exposure && !a->job->args->show && is_png(&a->series))
@@ -495,11 +548,15 @@ static void tell(const animation *a) {
     else
         printf("%s ... %s\n", noc_text_clean(text, sizeof(text), first), noc_text_clean(to, sizeof(to), last));
     printf("  animation %d pictures", a->pictures);
+    if (a->args->part.count > 1)
+        printf(", %d in part %d of %d", a->mine, a->args->part.number, a->args->part.count);
     if (a->kept_count)
         printf(", %d of them were there", a->kept_count);
     printf(", %.2f s at %g a second\n", a->pictures / a->args->fps, a->args->fps);
     if (a->filmed)
         printf("  film      %s%s\n", noc_text_clean(text, sizeof(text), a->film), a->made ? "" : ", was there");
+    else if (a->film && a->ffmpeg)
+        puts("  film      none yet: the part that ends last makes it, or the same command again");
     else if (a->film)
         puts("  film      none: the program ffmpeg is not on PATH");
     free(first);
@@ -513,14 +570,12 @@ int cli_animate(render_job *job) {
     int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
     if (cli_is_failure(status)) {
         ending = CLI_FAILURE;
-        if (a.made && a.kept_count + a.made < a.pictures)
-            cli_error("stopped: %d of %d pictures are there; the same command goes on", a.kept_count + a.made,
-                      a.pictures);
+        if (a.made && a.kept_count + a.made < a.mine)
+            cli_error("stopped: %d of %d pictures are there; the same command goes on", a.kept_count + a.made, a.mine);
     } else if (ending && !(a.began > 0)) {
         cli_error("interrupted before a picture was rendered");
     } else if (ending) {
-        cli_error("interrupted: %d of %d pictures are there; the same command goes on", a.kept_count + a.made,
-                  a.pictures);
+        cli_error("interrupted: %d of %d pictures are there; the same command goes on", a.kept_count + a.made, a.mine);
     } else {
         if (!job->args->common.quiet)
             tell(&a);

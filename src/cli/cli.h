@@ -123,6 +123,18 @@ double cli_now(void);      /* wall clock, seconds */
 /* Refuses a device that is not there or not usable, before the long work: CLI_OK, or an exit status after reporting. */
 int cli_check_device(const cli_command *command, const noc_device_params *device);
 
+/* part.c: processes that share a command's items. */
+#define CLI_MOST_PARTS 1000000
+#define CLI_OPTION_PART(s, g, f)                                                                                       \
+    { "part", g, NOC_OPTION_TEXT, offsetof(s, f), 0, 0, NULL, "K/N", "part K of N alone; else as MPI or Slurm say" }
+typedef struct cli_part {
+    int number, count; /* this process does part `number`, from 1; 1 of 1: all */
+    char by[64];       /* what gave them: --part, or names of variables */
+} cli_part;
+/* Fills *part by --part, whose value is text, or NULL: by the environment. Prints which, unless it is 1 of 1 or args
+ * are quiet. CLI_OK, or CLI_USAGE after reporting. */
+int cli_choose_part(const cli_command *command, const cli_args *args, const char *text, cli_part *part);
+
 /* recipe.c */
 /* Takes the recipe among the inputs of a command that reads cities, if there is one. CLI_OK, or an exit status after
  * reporting. */

@@ -56,6 +56,8 @@ typedef struct film {
     FILE *said;   /* its standard error */
     char *making; /* the file that it writes, */
     int part;     /* which is ours */
+    char *lost;   /* a picture that cannot be read, and why; NULL: none */
+    int error;
 } film;
 
 enum { PART = STDERR_FILENO + 1 }; /* its descriptor of that file */
@@ -169,8 +171,8 @@ static bool feed(const film *f, const char *data, size_t size) {
     return !size;
 }
 
-/* One picture's bytes. False: it cannot be read, which is told; or ffmpeg has hung up, and tells why. */
-static bool send_picture(const film *f, const char *file, bool *told) {
+/* Sends one picture's bytes. False: it cannot be read, and `lost` is set; or ffmpeg has hung up, and tells why. */
+static bool send_picture(film *f, const char *file) {
     char buffer[1 << 16];
     ssize_t n = 0;
     bool sent = true;
@@ -178,20 +180,20 @@ static bool send_picture(const film *f, const char *file, bool *told) {
     while (fd >= 0 && sent && (n = read(fd, buffer, sizeof(buffer))) > 0)
         sent = feed(f, buffer, (size_t)n);
     if (fd < 0 || n < 0) {
-        cli_error("%s: cannot be read: %s", file, strerror(errno));
-        *told = true;
+        f->error = errno;
+        f->lost = cli_format("%s", file);
     }
     if (fd >= 0)
         close(fd);
     return fd >= 0 && n >= 0 && sent;
 }
 
-static bool send_pictures(const film *f, const cli_series *series, int pictures, bool *told) {
+static bool send_pictures(film *f, const cli_series *series, int pictures) {
     bool going = true;
     for (int i = 0; i < pictures && going && !cli_interrupted(); i++) {
         char *file = cli_series_file(series, i + 1);
         cli_progress_show((double)i / pictures, -1, "film, picture %d of %d", i + 1, pictures);
-        going = send_picture(f, file, told);
+        going = send_picture(f, file);
         free(file);
     }
     return going;
@@ -231,17 +233,41 @@ static bool publish(const film *f, const char *name) {
     return done;
 }
 
+/* Reports why there is no film. What another process has made of the same pictures is one. */
+static noc_status fail(const film *f, const char *name, const char *comment, bool started) {
+    char line[300];
+    if (cli_file_holds(name, comment))
+        return NOC_OK;
+    if (f->lost) {
+        cli_error("%s: cannot be read: %s", f->lost, strerror(f->error));
+    } else if (started) {
+        last_line(f->said, line, sizeof(line));
+        cli_error("%s: ffmpeg made no film of the pictures, which are there: %s", name, line);
+    }
+    return NOC_ERR_IO;
+}
+
+/* ".name.host-pid.part" beside the target: processes of several hosts, and of containers whose numbers are all 1, may
+ * make the same film. */
+static char *name_part(const char *target) {
+    char host[65] = "";
+    const char *slash = strrchr(target, '/'), *base = slash ? slash + 1 : target;
+    gethostname(host, sizeof(host) - 1);
+    for (char *c = host; *c; c++)
+        *c = *c == '/' ? '_' : *c;
+    return cli_format("%.*s.%.150s.%s-%ld.part", (int)(base - target), target, base, host, (long)getpid());
+}
+
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment) {
     /* what a symbolic link points to is replaced, not the link */
     char *real = readlink(name, &(char){ 0 }, 1) > 0 ? realpath(name, NULL) : NULL;
-    const char *target = real ? real : name, *slash = strrchr(target, '/'), *base = slash ? slash + 1 : target;
-    film f = { .to = -1, .part = -1 };
-    f.making = cli_format("%.*s.%.200s.%ld.part", (int)(base - target), target, base, (long)getpid());
+    const char *target = real ? real : name;
+    film f = { .to = -1, .part = -1, .making = name_part(target) };
     struct sigaction before, ignore = { .sa_handler = SIG_IGN };
     sigaction(SIGPIPE, &ignore, &before); /* one that hangs up is an error, not our end */
     int unopened = open_part(&f), error = unopened ? unopened : start(&f, ffmpeg, fps, comment), ended = 0;
-    bool told = false, sent = !error && send_pictures(&f, series, pictures, &told);
+    bool sent = !error && send_pictures(&f, series, pictures);
     if (f.to >= 0)
         close(f.to);
     if (unopened) {
@@ -249,31 +275,27 @@ noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictu
     } else if (error) {
         cli_error("%s: %s cannot be started: %s", name, ffmpeg, strerror(error));
     } else {
-        if (told)
+        if (f.lost)
             kill(-f.pid, SIGKILL);
         ended = wait_for_end(&f);
     }
     cli_progress_clear();
     sigaction(SIGPIPE, &before, NULL);
     noc_status status = NOC_OK;
-    char line[300];
-    if (cli_interrupted()) {
+    bool whole = !error && !f.lost && sent && !ended;
+    if (cli_interrupted())
         status = NOC_ERR_CANCELLED;
-    } else if (error || told || !sent || ended) {
-        if (!error && !told) {
-            last_line(f.said, line, sizeof(line));
-            cli_error("%s: ffmpeg made no film of the pictures, which are there: %s", name, line);
-        }
+    else if (!whole)
+        status = fail(&f, name, comment, !error);
+    else if (!publish(&f, target))
         status = NOC_ERR_IO;
-    } else if (!publish(&f, target)) {
-        status = NOC_ERR_IO;
-    }
-    if (status && f.part >= 0)
+    if ((status || !whole) && f.part >= 0)
         unlink(f.making);
     if (f.part >= 0)
         close(f.part);
     if (f.said)
         fclose(f.said);
+    free(f.lost);
     free(f.making);
     free(real);
     return status;

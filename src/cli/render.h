@@ -11,6 +11,8 @@ typedef struct animation_args {
     double fps, duration; /* s; 0: what the path, or the number of pictures, says */
     int samples, segment;
     int film; /* noc_switch */
+    const char *part_text;
+    cli_part part; /* once it is checked */
 } animation_args;
 
 /* Of render; view begins with the same. */
@@ -75,8 +77,8 @@ bool cli_is_failure(noc_status status); /* and no interruption */
 
 /* animate.c: a picture for each step along a path */
 const noc_option *cli_animation_options(void); /* fields of animation_args */
-int cli_check_animation(const render_args *args);
-int cli_animate(render_job *job); /* once the scene is there; returns the exit status */
+int cli_check_animation(render_args *args);    /* fills animation.part, too */
+int cli_animate(render_job *job);              /* once the scene is there; returns the exit status */
 
 /* series.c: the files of an animation */
 typedef struct cli_series {
@@ -95,7 +97,8 @@ bool cli_is_film(const char *output);
 char *cli_find_ffmpeg(void); /* free() it; NULL: it is not in the folders of PATH */
 bool cli_file_holds(const char *file, const char *text);
 /* A film of the pictures from number 1 on, so many a second, with the comment in its metadata. It appears under its
- * name when it is whole. NOC_ERR_CANCELLED, or NOC_ERR_IO after reporting it. */
+ * name when it is whole. Another process may make the same film, and remove its pictures, meanwhile: that is NOC_OK.
+ * NOC_ERR_CANCELLED, or NOC_ERR_IO after reporting it. */
 noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
                          const char *comment);
 

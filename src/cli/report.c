@@ -37,7 +37,7 @@ static void add_options(meta_text *meta, const render_args *args) {
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
                                                           "help",    "lamps",  "animate",    "overwrite",  "mp4",
                                                           "path",    "tracks", "show-scale", "isolines",   "backend",
-                                                          "device",  NULL };
+                                                          "device",  "part",   NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));

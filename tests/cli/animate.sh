@@ -118,7 +118,8 @@ echo kept >elsewhere
 printf '#!/bin/sh\nfor last; do :; done\ncat >"${last#file:}"\n' >bin/ffmpeg
 in_its_way() { # a command that takes the place of a run's unfinished film, and the film
     # the run is the shell, so that its number is known
-    (export PATH="$PWD/bin:$path" && exec sh -c "$1"' "there/.$2.$$.part" && shift 2 && exec "$@"' sh "$1" "$2" \
+    (export PATH="$PWD/bin:$path" && exec sh -c "$1"' "there/.$2.$(uname -n)-$$.part" && shift 2 && exec "$@"' \
+        sh "$1" "$2" \
         "$program" render lamp.yaml --animate --frames 3 --samples 1 --fps 12.5 -o "there/$2") >out 2>err </dev/null
     status=$?
 }
@@ -126,7 +127,7 @@ in_its_way 'ln -s ../elsewhere' f.mp4
 test "$status" = 0 && test "$(cat elsewhere)" = kept && test ! -L there/f.mp4 && grep -aq IEND there/f.mp4
 result $? "a link of the unfinished film's name is not followed" "$(cat err)"
 in_its_way mkdir k.mp4
-test "$status" = 1 && grep -Eq 'there/.k.mp4.[0-9]+.part: cannot be written' err && rmdir there/.k.mp4.*.part
+test "$status" = 1 && grep -Eq 'there/.k.mp4.[^/]*-[0-9]+.part: cannot be written' err && rmdir there/.k.mp4.*.part
 result $? "nor is a folder" "$(cat err)"
 mkdir there/d.mp4
 film -o there/d-%d.png
