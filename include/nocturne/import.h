@@ -74,6 +74,10 @@ typedef struct noc_import_params {
     /* "FILE=CRS": CRS of inputs in place of the one that they name. FILE is an input, the end of its path, or a pattern
      * of either; an error if no input is called so. Of several for one input the last counts */
     noc_texts file_crs;
+    /* "FILE=UNIT", or "UNIT" of all: unit of the heights (z) of city models, terrain and lamps' feet, and of heights of
+     * buildings in maps that name none: "m", "ft", "us-ft", "dm", "cm", "mm". FILE as in file_crs. Of several for one
+     * input the last counts. Default: what the file or its CRS names, else the unit of x and y, metres of degrees */
+    noc_texts height_unit;
     /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
      * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     const char *scene_crs;
@@ -227,14 +231,16 @@ typedef struct noc_window_counts {
 } noc_window_counts;
 
 typedef struct noc_report_file {
-    const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
-    const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
-    const char *crs_given;     /* as spelled in the file, "" if none */
-    bool crs_taken;            /* the file names none: it is its format's, or what its numbers tell */
-    bool crs_overridden;       /* crs is noc_import_params.file_crs's, whatever the file names */
-    uint64_t bytes;            /* as stored */
-    uint64_t bytes_read;       /* after decompression */
-    double seconds;            /* that reading took; 0: of a built city, which does not keep it */
+    const char *path, *format;  /* "CityGML 2.0", "GeoJSON", ... */
+    const char *crs;            /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
+    const char *crs_given;      /* as spelled in the file, "" if none */
+    bool crs_taken;             /* the file names none: it is its format's, or what its numbers tell */
+    bool crs_overridden;        /* crs is noc_import_params.file_crs's, whatever the file names */
+    double height_unit;         /* of its heights [m]; 0: no coordinates were read, or a mesh's */
+    const char *height_unit_by; /* what the unit follows from: "by its CRS", ...; "" where height_unit is 0 */
+    uint64_t bytes;             /* as stored */
+    uint64_t bytes_read;        /* after decompression */
+    double seconds;             /* that reading took; 0: of a built city, which does not keep it */
     bool has_extent;
     bool degrees;                        /* the extent's x and y are longitude and latitude */
     double extent_min[3], extent_max[3]; /* in the file's CRS, easting northing height (x y z) order */

@@ -108,6 +108,26 @@ static void print_extent(const noc_report_file *file) {
     putchar('\n');
 }
 
+/* A unit without a name is told by its metres. */
+static void print_heights(const noc_report_file *file) {
+    static const struct {
+        double metres;
+        const char *name;
+    } units[] = { { 1, "metres" }, { .3048, "feet" }, { 1200. / 3937, "US survey feet" } };
+    const double *lo = file->extent_min, *hi = file->extent_max;
+    if (!(file->height_unit > 0) || !file->has_extent || (lo[2] == 0 && hi[2] == 0))
+        return;
+    printf("  %-11s ", "heights");
+    const char *name = NULL;
+    for (size_t i = 0; i < sizeof(units) / sizeof(*units); i++)
+        if (fabs(file->height_unit / units[i].metres - 1) < 1e-7)
+            name = units[i].name;
+    if (name)
+        printf("in %s, %s\n", name, file->height_unit_by);
+    else
+        printf("in units of %.7g m, %s\n", file->height_unit, file->height_unit_by);
+}
+
 static void print_objects(const noc_report_file *file) {
     char a[32], b[32];
     printf("  %-11s %s", "objects", noc_text_count(a, file->objects));
@@ -244,6 +264,7 @@ void info_print_file(const noc_report_file *file, const info_args *args) {
     printf("%s\n", noc_text_clean(path, sizeof(path), file->path));
     print_source(file, args->timing);
     print_extent(file);
+    print_heights(file);
     print_features(file);
     print_roads(file);
     bool map = file->roads || file->railways || file->map_points || file->map_lines || file->map_areas ||

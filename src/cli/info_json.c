@@ -144,6 +144,10 @@ static void report_file(const noc_report_file *file, bool timing) {
     text("format", file->format);
     text("crs", file->crs);
     text("crs_given", file->crs_given);
+    if (file->height_unit > 0) {
+        number("height_unit", file->height_unit);
+        text("height_unit_by", file->height_unit_by);
+    }
     const char *from = *file->crs_given ? "file" : file->crs_taken ? "format" : *file->crs ? "option" : "";
     text("crs_from", file->crs_overridden ? "option" : from);
     number("bytes", (double)file->bytes);

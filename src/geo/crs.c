@@ -20,6 +20,7 @@ struct geo_crs {
     char *name, *definition;
     bool geographic, metric, lat_first;
     double height_unit; /* metres */
+    bool height_named;  /* by a vertical part or a third axis */
     bool has_area;
     double west, south, east, north; /* area of use, degrees on WGS 84; west > east across the antimeridian */
 };
@@ -98,13 +99,16 @@ static void reduce_to_horizontal(geo_crs *crs) {
         if (vertical)
             crs->height_unit = axis_unit(context, vertical, 0);
         proj.proj_destroy(vertical);
+        crs->height_named = crs->height_unit > 0;
         crs->pj = replace(crs->pj, proj.proj_crs_get_sub_crs(context, crs->pj, 0));
     }
     if (!crs->pj)
         return;
     double third = axis_unit(context, crs->pj, 2);
-    if (third > 0)
+    if (third > 0) {
         crs->height_unit = third;
+        crs->height_named = true;
+    }
 }
 
 static bool is_direction(const char *direction, const char *a, const char *b) {
@@ -202,8 +206,10 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     reduce_to_horizontal(crs);
     if (spelling.vertical[0]) {
         PJ *vertical = create_registered(crs->context, spelling.vertical);
-        if (vertical && proj.proj_get_type(vertical) == PJ_TYPE_VERTICAL_CRS)
+        if (vertical && proj.proj_get_type(vertical) == PJ_TYPE_VERTICAL_CRS) {
             crs->height_unit = axis_unit(crs->context, vertical, 0);
+            crs->height_named = crs->height_unit > 0;
+        }
         proj.proj_destroy(vertical);
     }
     if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what))
@@ -309,6 +315,13 @@ char *geo_crs_wkt(const geo_crs *crs) {
 bool geo_crs_is_geographic(const geo_crs *crs) { return crs->geographic; }
 bool geo_crs_is_metric(const geo_crs *crs) { return crs->metric; }
 bool geo_crs_lat_first(const geo_crs *crs) { return crs->lat_first; }
+
+double geo_crs_height_unit(const geo_crs *crs, bool *named) {
+    *named = crs->height_named;
+    return crs->height_unit;
+}
+
+void geo_crs_set_height_unit(geo_crs *crs, double metres) { crs->height_unit = metres; }
 
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
     return a && b && (a == b || proj.proj_is_equivalent_to_with_ctx(a->context, a->pj, b->pj, PJ_COMP_EQUIVALENT));

@@ -28,6 +28,11 @@ char *geo_crs_wkt(const geo_crs *crs);
 bool geo_crs_is_geographic(const geo_crs *crs);
 bool geo_crs_is_metric(const geo_crs *crs); /* projected, axes in metres */
 bool geo_crs_lat_first(const geo_crs *crs); /* the authority's order is northing/latitude first */
+/* Returns the unit of heights [m]. *named: it is that of a vertical part or of a third axis; else it is assumed: the
+ * unit of x and y of a projected CRS, metres of a geographic one. */
+double geo_crs_height_unit(const geo_crs *crs, bool *named);
+/* Sets the unit of heights [m], for transforms that are made later. Requires metres > 0. */
+void geo_crs_set_height_unit(geo_crs *crs, double metres);
 /* The first thing in a text that makes a library which takes it for a CRS open a file: a grid, a file of definitions;
  * copied to what. False if there is none. */
 bool geo_crs_text_names_file(const char *text, char what[40]);
@@ -133,6 +138,7 @@ enum { GEO_LAMP_TAGS = 2048 }; /* bytes of geo_lamp.tags at most, with the 0 */
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
     double xyz[3];      /* file CRS; xyz[2] NaN: stands on the ground */
+    bool metres;        /* xyz[2] is in metres, whatever the CRS's unit of heights */
     double height;      /* of the light above the ground, m */
     double bare_height; /* the number written for it without a unit, plausible or not; 0: none */
     double direction;   /* degrees clockwise from north the head faces, NaN: none */
@@ -179,6 +185,7 @@ typedef struct geo_footprint {
     const size_t *ring_size;
     const double *xyz;
     double height, min_height, levels, min_level, roof_height;
+    bool bare; /* height is written without a unit, in a file whose format has none */
     noc_building_use use;
 } geo_footprint;
 
@@ -306,6 +313,11 @@ typedef struct geo_sink {
      * changes. Returns in *lat_first whether the file's tuples are in latitude/northing first order; the reader swaps
      * them before emitting. */
     noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);
+    /* Sets the unit of the heights that follow [m], where the file specifies it apart from its CRS; called after crs.
+     * Requires metres > 0. May be NULL. */
+    noc_status (*heights)(void *ctx, double metres);
+    /* Returns the unit of heights [m] in the CRS of the last call of crs. NULL: they are metres. */
+    double (*height_unit)(void *ctx);
     /* Numbers an appearance for polygons that follow; *number 0: nothing of it is of use. NULL: none is wanted. */
     noc_status (*appearance)(void *ctx, const geo_appearance *appearance, uint32_t *number);
     noc_status (*begin_object)(void *ctx, const geo_object *object);

@@ -25,7 +25,8 @@ typedef struct terrain {
     import_budget budget;
     GDALRasterBandH band;
     double place[6];    /* GDAL's: x = place[0] + place[1] * column + place[2] * row, y so by the others */
-    double scale, base; /* of heights, to metres */
+    double metres;      /* of its unit of heights; 0: unset */
+    double scale, base; /* from samples to heights */
     size_t step;        /* samples of the file a sample that is read */
     terrain_grid grid;
     size_t triangles;
@@ -69,28 +70,35 @@ static noc_status tell_crs(terrain *t) {
     return status;
 }
 
-/* Metres of a height: where the CRS tells the unit of heights, it is converted with it. */
+/* The unit of heights, where it is the raster's own: one of a vertical CRS goes before it. */
 static void find_unit(terrain *t) {
     static const struct {
         const char *name;
         double metres;
-    } units[] = {
-        { "ft", 0.3048 },          { "foot", 0.3048 },      { "feet", 0.3048 }, { "cm", 0.01 },
-        { "centimeter", 0.01 },    { "centimetre", 0.01 },  { "dm", 0.1 },      { "us survey foot", 1200. / 3937 },
-        { "us-ft", 1200. / 3937 }, { "ftus", 1200. / 3937 }
-    };
+    } units[] = { { "m", 1 },
+                  { "metre", 1 },
+                  { "meter", 1 },
+                  { "metres", 1 },
+                  { "meters", 1 },
+                  { "ft", 0.3048 },
+                  { "foot", 0.3048 },
+                  { "feet", 0.3048 },
+                  { "cm", 0.01 },
+                  { "centimeter", 0.01 },
+                  { "centimetre", 0.01 },
+                  { "dm", 0.1 },
+                  { "us survey foot", 1200. / 3937 },
+                  { "us-ft", 1200. / 3937 },
+                  { "ftus", 1200. / 3937 } };
     int given;
     const char *unit = gdal.GDALGetRasterUnitType(t->band);
     double scale = gdal.GDALGetRasterScale(t->band, &given), base = gdal.GDALGetRasterOffset(t->band, &given);
-    double metres = 1;
     OGRSpatialReferenceH srs = gdal.GDALGetSpatialRef(t->source.dataset);
     for (size_t i = 0; i < NOC_COUNT(units) && !(srs && gdal.OSRIsCompound(srs)); i++)
         if (noc_ieq(unit, units[i].name))
-            metres = units[i].metres;
-    t->scale = metres * (isfinite(scale) && scale != 0 ? scale : 1);
-    t->base = metres * (isfinite(base) ? base : 0);
-    if (metres != 1)
-        noc_info(t->sink->log, "%s: heights are in \"%.40s\": taken as %.7g m each", t->name, unit, metres);
+            t->metres = units[i].metres;
+    t->scale = isfinite(scale) && scale != 0 ? scale : 1;
+    t->base = isfinite(base) ? base : 0;
 }
 
 static noc_status look(terrain *t) {
@@ -201,7 +209,8 @@ static bool emit(void *ctx, const uint32_t corners[3][2]) {
 }
 
 static noc_status emit_all(terrain *t, const noc_import_params *params) {
-    double error = terrain_grid_error(&t->grid, params->terrain_error, (size_t)params->terrain_triangles);
+    double error = terrain_grid_error(&t->grid, params->terrain_error / (t->metres > 0 ? t->metres : 1),
+                                      (size_t)params->terrain_triangles);
     const geo_object object = { .kind = GEO_TERRAIN, .id = "terrain", .lod = -1 };
     noc_status status = t->sink->begin_object(t->sink->ctx, &object);
     if (status)
@@ -213,7 +222,7 @@ static noc_status emit_all(terrain *t, const noc_import_params *params) {
     if (!t->triangles)
         return noc_error(t->sink->log, NOC_ERR_FORMAT, "%s: GeoTIFF without a height", t->name);
     noc_info(t->sink->log, "%s: %zu x %zu heights as %zu triangles, to %.2g m (--terrain-error, --terrain-triangles)",
-             t->name, t->grid.width, t->grid.height, t->triangles, error);
+             t->name, t->grid.width, t->grid.height, t->triangles, error * (t->metres > 0 ? t->metres : 1));
     return NOC_OK;
 }
 
@@ -227,6 +236,8 @@ static noc_status read_terrain(noc_stream *stream, const noc_import_params *para
         status = look(&t);
     if (!status)
         status = tell_crs(&t);
+    if (!status && t.metres > 0 && sink->heights)
+        status = sink->heights(sink->ctx, t.metres);
     if (!status)
         status = read_heights(&t);
     if (!status && !terrain_grid_measure(&t.grid))

@@ -131,6 +131,7 @@ static const noc_option display_options[] = {
 static const noc_option import_options[] = {
     TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none (EPSG:n, WKT, PROJ)"),
     TEXTS(P, file_crs, "file-crs", "City", "FILE=CRS", "in place of the CRS an input names; repeatable"),
+    TEXTS(P, height_unit, "height-unit", "City", "UNIT", "of heights: m, ft, us-ft, ..., FILE=UNIT"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
     TEXT(P, bbox, "bbox", "City", "X0,Y0,X1,Y1[,CRS]", "part of city models and lamps that is taken"),
     INT(P, lod, "lod", "City", 0, 4, "",

@@ -30,6 +30,7 @@ typedef struct city_sink {
     NOC_ARRAY(geo_lamp) lamps;
     NOC_ARRAY(char *) crs; /* "(none)" for NULL */
     bool lat_first;        /* answer to crs */
+    double metres;         /* that the file gives as its unit of heights; 0: none */
     bool in_object;
     size_t calls, stop_at;                 /* stops at that call with NOC_ERR_CANCELLED; 0: never */
     size_t asked, asked_amid, lamps_asked; /* for progress; with new lamps since then; lamps at the last time */
@@ -39,6 +40,13 @@ typedef struct city_sink {
 } city_sink;
 
 static noc_status city_count(city_sink *s) { return ++s->calls == s->stop_at ? NOC_ERR_CANCELLED : NOC_OK; }
+
+static noc_status city_heights(void *ctx, double metres) {
+    city_sink *s = ctx;
+    assert_true(s->crs.len > 0 && metres > 0);
+    s->metres = metres;
+    return NOC_OK;
+}
 
 static noc_status city_crs(void *ctx, const char *name, const char *place, bool *lat_first) {
     city_sink *s = ctx;
@@ -137,6 +145,7 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
                           .log = noc_log_create(&(noc_log_params){ .message = city_quiet }),
                           .issues = geo_issues_create(),
                           .crs = city_crs,
+                          .heights = city_heights,
                           .begin_object = city_begin,
                           .polygon = city_polygon,
                           .end_object = city_end,

@@ -202,7 +202,7 @@ struct run {
     noc_status status;
     noc_scene_info info;
     int errors, warnings;
-    char last_warning[500];
+    char last_warning[1000];
 };
 
 static void on_message(void *user, noc_log_level level, const char *text) {

@@ -211,7 +211,7 @@ static void test_fields(void **state) {
     noc_report_file file;
     memset(&file, 1, sizeof(file));
     report->lamps_inferred = 3, report->road_cars = 4, report->roads_drawn = 5, report->images_reduced = 6;
-    file.path = "a/b.gml", file.format = "F", file.crs = "C", file.crs_given = "";
+    file.path = "a/b.gml", file.format = "F", file.crs = "C", file.crs_given = "", file.height_unit_by = "H";
     file.columns = NULL;
     file.lines = NULL;
     file.column_count = file.line_count = 0;
@@ -223,6 +223,8 @@ static void test_fields(void **state) {
     noc_report_file kept = *noc_report_get_file(after, 0);
     assert_memory_equal(&report->lamps_inferred, &after->lamps_inferred, 4 * sizeof(size_t));
     kept.path = file.path, kept.format = file.format, kept.crs = file.crs, kept.crs_given = file.crs_given;
+    assert_string_equal(kept.height_unit_by, file.height_unit_by);
+    kept.height_unit_by = file.height_unit_by;
     kept.columns = file.columns;
     kept.lines = file.lines;
     assert_true(kept.seconds == 0);

@@ -97,7 +97,9 @@ static void test_other_system(void **state) {
             assert_int_equal(r.warnings, 1);
             assert_non_null(strstr(r.last_warning, "row.lamps: its 12 lamps with a height lie some 47."));
             assert_non_null(strstr(r.last_warning, below ? "below" : "above"));
-            assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
+            assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 1);
+            assert_int_equal(noc_report_get_file(r.report, 1)->lines[0].count, 12);
+            assert_false(noc_report_get_file(r.report, 1)->lines[0].lossless);
             for (int i = 0; i < 12; i++)
                 assert_close(ground_at(r.scene, 678000 + 23 * i, 5403988), slope(678000 + 23 * i), .5);
             assert_int_equal(r.info.lights, 12);

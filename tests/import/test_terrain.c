@@ -214,7 +214,11 @@ static void test_tiff(void **state) {
     /* units, scales, heights that are missing */
     of.unit = "ft";
     assert_int_equal(read_tiff(&s, &of, z), NOC_OK);
-    assert_float_equal(highest(&s), 150 * 0.3048, 1e-3);
+    assert_float_equal(highest(&s), 150, 1e-3);
+    assert_float_equal(s.metres, 0.3048, 1e-9);
+    of.unit = "metre"; /* whatever the CRS's unit is */
+    assert_int_equal(read_tiff(&s, &of, z), NOC_OK);
+    assert_float_equal(s.metres, 1, 1e-9);
     of.unit = NULL, of.scale = 0.1;
     assert_int_equal(read_tiff(&s, &of, z), NOC_OK);
     assert_float_equal(highest(&s), 15, 1e-3);

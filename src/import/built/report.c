@@ -19,6 +19,8 @@ static const field fields[] = {
     FIELD(TEXT, crs_given, 1),
     FIELD(BOOL, crs_taken, 1),
     FIELD(BOOL, crs_overridden, 1),
+    FIELD(DOUBLE, height_unit, 1),
+    FIELD(TEXT, height_unit_by, 1),
     FIELD(U64, bytes, 1),
     FIELD(U64, bytes_read, 1),
     FIELD(BOOL, has_extent, 1),
@@ -252,7 +254,7 @@ noc_status built_read_report(noct_file *f, noc_report *report) {
             get_field(&c, &fields[k], report, &file);
         get_columns(&c, report, &file);
         get_lines(&c, report, &file);
-        c.bad = c.bad || !file.path || !file.format || !file.crs || !file.crs_given;
+        c.bad = c.bad || !file.path || !file.format || !file.crs || !file.crs_given || !file.height_unit_by;
         if (report->arena.refused || (!c.bad && !array_push(&report->files, file)))
             return noct_no_memory(f);
     }

@@ -47,6 +47,7 @@ static void emit_block(cg_parser *p, const cg_polygon *polygon, const cg_geometr
     cg_transform(p, polygon, NULL, false);
     if (p->status)
         return;
+    height /= p->sink->height_unit ? p->sink->height_unit(p->sink->ctx) : 1;
     double z = INFINITY, degree = p->lat_first || (p->out.len && fabs(p->out.data[0]) <= 180) ? 1e-8 : 1e-3;
     for (size_t i = 2; i < p->out.len; i += 3)
         z = fmin(z, p->out.data[i]);

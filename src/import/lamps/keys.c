@@ -505,7 +505,9 @@ noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, 
             continue;
         columns[n++] = (geo_column){ .name = k->name,
                                      .field = field_read(k),
-                                     .unit = k->meaning.unit,
+                                     .unit = k->meaning.field == LAMP_FIELD_ELEVATION && !k->meaning.unit_named
+                                                 ? "" /* the CRS's */
+                                                 : k->meaning.unit,
                                      .example = k->example ? k->example : "",
                                      .values = k->values,
                                      .mapped = k->meaning.rank < 0 };

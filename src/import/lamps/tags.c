@@ -244,8 +244,11 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     case LAMP_FIELD_MOUNT: return read_mount(r, text);
     case LAMP_FIELD_ID: lamp->id = text; return true;
     case LAMP_FIELD_ELEVATION:
-        if ((!isfinite(lamp->xyz[2]) || c->rank < 0) && lamp_coordinate(text, &x) && fabs(x * c->scale) < 9000)
+        if (!lamp_coordinate(text, &x) || !(fabs(x * c->scale) < 9000))
+            return true;
+        if (!isfinite(lamp->xyz[2]) || c->rank < 0)
             lamp->xyz[2] = x * c->scale;
+        lamp->metres = c->unit_named && lamp->xyz[2] == x * c->scale;
         return true;
     default: return false;
     }

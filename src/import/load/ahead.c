@@ -107,6 +107,16 @@ static noc_status on_crs(void *ctx, const char *srs_name, const char *place, boo
     return a->sink.crs(a->sink.ctx, srs_name, place, lat_first);
 }
 
+static noc_status on_heights(void *ctx, double metres) {
+    struct look_ahead *a = ctx;
+    return a->sink.heights(a->sink.ctx, metres);
+}
+
+static double on_height_unit(void *ctx) {
+    struct look_ahead *a = ctx;
+    return a->sink.height_unit(a->sink.ctx);
+}
+
 static noc_status on_appearance(void *ctx, const geo_appearance *appearance, uint32_t *number) {
     struct look_ahead *a = ctx;
     return a->sink.appearance(a->sink.ctx, appearance, number);
@@ -287,6 +297,8 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     a->sink = *sink;
     sink->ctx = a;
     sink->crs = on_crs;
+    sink->heights = on_heights;
+    sink->height_unit = on_height_unit;
     sink->appearance = a->sink.appearance ? on_appearance : NULL;
     sink->begin_object = on_begin_object;
     sink->polygon = on_polygon;

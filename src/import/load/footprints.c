@@ -20,7 +20,9 @@ noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footp
     pending_footprint p = { .footprint = *f, .input = index };
     if (!isfinite(f->height) && !isfinite(f->levels))
         geo_issue(in->issues, GEO_GUESSED, "height of a building, by --building-height", f->id);
-    if (isfinite(f->height) && f->levels >= 2 && !array_push(&im->storeys, (float)(f->height / f->levels)))
+    const building_size size = { .height = (float)f->height,
+                                 .storey = f->levels >= 2 ? (float)(f->height / f->levels) : 0 };
+    if (isfinite(f->height) && !array_push(&in->sizes, size))
         return noc_no_memory(im->log, in->path);
     if (im->inspect) {
         count_one(in);

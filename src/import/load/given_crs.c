@@ -32,8 +32,7 @@ noc_status given_crs_check(const noc_import_params *p, noc_log *log) {
 
 /* ---- --file-crs FILE=CRS ---- */
 
-/* Returns true if `name` is the path, its end, a pattern of either, or another name of the same file. */
-static bool is_called(const char *path, const char *name) {
+bool given_is_called(const char *path, const char *name) {
     while (!strncmp(name, "./", 2))
         name += 2;
     for (const char *end = path, *slash; end; end = slash ? slash + 1 : NULL) {
@@ -49,7 +48,7 @@ static size_t give(importer *im, const char *name, const char *crs, bool degrees
     size_t count = 0;
     for (size_t i = 0; i < im->input_count; i++) {
         input *in = &im->inputs[i];
-        if (!*name || !strncmp(in->path, BUILTIN, strlen(BUILTIN)) || !is_called(in->path, name))
+        if (!*name || !strncmp(in->path, BUILTIN, strlen(BUILTIN)) || !given_is_called(in->path, name))
             continue;
         in->crs = crs;
         in->crs_degrees = degrees;

@@ -30,9 +30,21 @@ static double median(double *values, size_t count) {
     return values[count / 2];
 }
 
+/* The unit that brings lamps to the ground; NULL: none. `ground` is its height where they are `off` it. */
+static const char *unit_to_ground(const importer *im, size_t index, double ground, double off) {
+    static const double units[] = { 1, .3048 };
+    const input *in = &im->inputs[index];
+    double unit = in->sources.len ? in->sources.data[0]->unit : 1;
+    for (size_t i = 0; i < NOC_COUNT(units) && !(in->unit > 0); i++)
+        if (fabs(units[i] / unit - 1) > .01 && fabs((ground + off) * units[i] / unit - ground) < .03 * fabs(ground))
+            return height_unit_word(units[i]);
+    return NULL;
+}
+
 /* One input's lamps: forgets their heights where all of them are off alike. */
 static void check_input(importer *im, const city_ground *ground, size_t index, double *off) {
     size_t n = 0;
+    double ground_z = 0;
     bool zero = true; /* heights that are none are 0 */
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp *p = &im->lamps.data[i];
@@ -40,6 +52,7 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
         if (p->input != index || !isfinite(p->lamp.xyz[2]) || !told_height(im, ground, p->lamp.xyz, &z, &distance))
             continue;
         off[n++] = p->lamp.xyz[2] - z;
+        ground_z += z;
         zero = zero && fabs(p->lamp.xyz[2] + im->origin[2]) < 1e-3;
     }
     if (n < (zero ? 1 : 3))
@@ -52,11 +65,16 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
     for (size_t i = 0; i < im->lamps.len; i++)
         if (im->lamps.data[i].input == index)
             im->lamps.data[i].lamp.xyz[2] = NAN;
+    const char *path = im->inputs[index].path, *unit = unit_to_ground(im, index, ground_z / (double)n, middle);
+    char mend[240] = "";
+    if (unit)
+        noc_snprintf(mend, sizeof(mend), "; pass --height-unit %.200s=%s if they are in that unit", path, unit);
     noc_warn(
         im->log,
         "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another "
-        "system (ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground",
-        im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
+        "system (ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground%s",
+        path, n, fabs(middle), middle > 0 ? "above" : "below", mend);
+    geo_issues_add(im->inputs[index].issues, GEO_GUESSED, "elevation of a lamp of another system, not followed", n, "");
 }
 
 /* What was laid of a file. */

@@ -398,7 +398,8 @@ static void warn_of_collapsed(const importer *im) {
 
 static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
-    noc_status stood = heights_of_surfaces(im);
+    noc_status stood = units_check_terrain(im); /* before surfaces are laid on it */
+    stood = stood ? stood : heights_of_surfaces(im);
     stood = stood ? stood : footprints_stand(im);
     if (stood)
         return stood;

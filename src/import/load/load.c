@@ -327,6 +327,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     noc_status status = recognise_told(im);
     if (!status)
         status = given_crs_take(im);
+    if (!status)
+        status = height_unit_take(im);
     if (status)
         return status;
     size_t *inputs = noc_calloc(im->input_count, sizeof(*inputs));
@@ -343,10 +345,10 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     free(inputs);
     if (!status)
         status = check_columns(im);
-    if (!status) {
-        units_check(im);
+    if (!status)
+        status = units_check(im);
+    if (!status)
         given_crs_warn(im);
-    }
     if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len && !im->roads.len)
         status =
             noc_error(im->log, NOC_ERR_ARGUMENT, "bbox: nothing of the inputs lies in %.10g,%.10g,%.10g,%.10g of %s",
@@ -465,6 +467,8 @@ static noc_status check_params(const noc_import_params *params, bool alone, noc_
         status = lamp_mapping_check(params, log);
     if (!status)
         status = windows_check(params, log);
+    if (!status && !alone)
+        status = height_unit_check(params, log);
     return status || alone ? status : given_crs_check(params, log);
 }
 

@@ -25,9 +25,12 @@ typedef struct source_crs {
     bool further;            /* the file had another before, in which the report has its extent */
     bool axes_decided, swap;
     int tries;
-    double outside; /* degrees outside the CRS's area of use, of the last try */
-    bool opposite;  /* its numbers would fit with the other sign */
-    double shift_x; /* zone number before the easting */
+    double outside;  /* degrees outside the CRS's area of use, of the last try */
+    bool opposite;   /* its numbers would fit with the other sign */
+    double shift_x;  /* zone number before the easting */
+    double unit;     /* of heights [m] */
+    bool unit_named; /* by the file, its CRS or the user; else it is assumed */
+    const char *unit_by;
 } source_crs;
 
 /* expand.c: the files that inputs stand for: folders, patterns, lists. */
@@ -47,6 +50,12 @@ typedef struct given_place {
     source_crs *source;
 } given_place;
 
+/* A building, as far as it tells units [m]. */
+typedef struct building_size {
+    float height, width; /* width: 0: unset */
+    float storey;        /* 0: unset */
+} building_size;
+
 /* A lamp of a file that is looked at and not drawn. */
 typedef struct seen_lamp {
     double xy[2]; /* local metres */
@@ -59,6 +68,7 @@ typedef struct input {
     bool left_out;      /* found in a folder, and of no kind that is read */
     const char *crs;    /* that the user gives it in place of what it names; NULL: none */
     bool crs_degrees;   /* which is geographic */
+    double unit;        /* of heights [m], that the user gives; 0: none */
     bool is_file;       /* with the next three, which tell whether two are the same */
     uint64_t device, inode, size;
     const noc_reader *reader; /* NULL: built-in */
@@ -67,8 +77,10 @@ typedef struct input {
     noc_report_file file; /* texts in the report's arena */
     bool remote;          /* read by the helper */
     bool started, repeated;
-    size_t first_mesh, end_mesh;      /* of the scene, that were read from it */
-    size_t lamps_lost;                /* that the reader or the sink found to have no place */
+    size_t first_mesh, end_mesh; /* of the scene, that were read from it */
+    size_t lamps_lost;           /* that the reader or the sink found to have no place */
+    NOC_ARRAY(building_size) sizes;
+    NOC_ARRAY(float) feet;            /* x, y, z of the lowest corners of some buildings, local metres */
     NOC_ARRAY(float) lamp_heights;    /* of those that name no unit, as they are written */
     NOC_ARRAY(float) lantern_heights; /* of these, of lanterns */
     given_place lamp_given;           /* of the first of them */
@@ -212,8 +224,6 @@ typedef struct importer {
     bool has_roads;
     size_t first_mesh; /* of those that inputs are read into: what was there before, and built-in scenes, is whole */
     double open_area;  /* m2 of terrain, roads, pavements, lawns and water, seen from above */
-    NOC_ARRAY(float) heights; /* of buildings, m */
-    NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
     NOC_ARRAY(geo_road) roads;         /* local metres; texts and coordinates in importer.names */
     noc_map road_places;               /* of those, by which a second one is told */
@@ -412,6 +422,8 @@ noc_status given_status(noc_status status); /* Returns the status of a CRS of th
 noc_status given_crs_check(const noc_import_params *params, noc_log *log);
 noc_status given_crs_take(importer *im); /* gives inputs those of noc_import_params.file_crs */
 /* Returns the input's own, else that of inputs that name none; NULL: none. */
+/* Returns true if `name` is the input's path, its end, a pattern of either, or another name of the same file. */
+bool given_is_called(const char *path, const char *name);
 const char *given_crs_of(const importer *im, const input *in);
 /* Sets *crs to the input's own in place of `spelling`, and warns if that is another one. */
 noc_status given_crs_override(reading *r, const char *spelling, bool taken, const char *place, geo_crs **crs);
@@ -484,9 +496,28 @@ noc_status road_lamps_raise(importer *im);
 noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track);
 noc_status traffic_add(importer *im); /* cars along them */
 
-/* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres, or where lamps hang
- * higher than they do in their part of the world. The latter are counted as guessed at, too. */
-void units_check(importer *im);
+/* height_unit.c: the unit of heights. */
+noc_status height_unit_check(const noc_import_params *p, noc_log *log); /* of noc_import_params.height_unit */
+noc_status height_unit_take(importer *im);                              /* gives inputs theirs */
+/* Sets the unit of a CRS that the input names. */
+void height_unit_settle(const input *in, source_crs *s);
+/* sink_create's: the file has a unit of its own. */
+noc_status height_unit_heights(void *reading, double metres);
+double height_unit_now(void *reading);
+const char *height_unit_name(double metres); /* "feet"; NULL: it has no name */
+const char *height_unit_word(double metres); /* that --height-unit takes; NULL: none */
+
+/* building_units.c: warns, and counts as guessed at, where heights of buildings or of their storeys are hardly in the
+ * unit that they were read in, or where terrain lies a foot for each metre of theirs. */
+bool units_see_building(importer *im, input *in, const object_now *now) NOC_MUST_USE; /* false: out of memory */
+noc_status units_check_buildings(importer *im);
+noc_status units_check_terrain(importer *im); /* once all surfaces are in */
+/* Returns true if the input names a CRS in feet, or lies in the United States or Canada. */
+bool units_of_feet(const source_crs *source, const double xy[2]);
+
+/* units.c: warns where lamps hang higher than they do in their part of the world, and counts them as guessed at; then
+ * of buildings. */
+noc_status units_check(importer *im);
 bool units_see_lamp(input *in, const pending_lamp *p) NOC_MUST_USE; /* false: memory was refused */
 void units_forget(input *in);
 

@@ -88,6 +88,7 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
             return noc_no_memory(r->log, in->path);
         }
         *source = (source_crs){ .spelling = kept, .taken = taken, .crs = crs };
+        height_unit_settle(in, source);
     }
     r->source = source;
     if (lat_first)
@@ -181,6 +182,8 @@ static noc_status set_place(reading *r, geo_crs *crs, const double origin[3]) {
     r->im->placed = true;
     r->im->placed_by = r->in->path;
     r->im->scene_crs = crs;
+    if (crs)
+        geo_crs_set_height_unit(crs, 1); /* whatever that of the first input is */
     memcpy(r->im->origin, origin, sizeof(r->im->origin));
     noc_scene_set_crs(r->im->scene, crs ? geo_crs_name(crs) : NULL, r->im->origin);
     free(r->im->scene->without_crs);
@@ -336,6 +339,9 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
         file->crs_given = arena_strdup(&r->im->report->arena, s->taken ? "" : s->spelling);
         file->crs_overridden = r->in->crs != NULL;
         file->crs_taken = s->taken && s->crs && !r->in->crs;
+        bool heights = r->in->reader && r->in->reader->reads != NOC_READS_MESH;
+        file->height_unit = heights ? s->unit : 0;
+        file->height_unit_by = heights ? s->unit_by : "";
     }
     return r->im->report->arena.refused ? noc_no_memory(r->log, path) : NOC_OK;
 }
@@ -472,6 +478,8 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
     if (!array_append(&r->given, xyz, numbers))
         return noc_no_memory(r->log, in->path);
     size_t astray = 0, failed = 0;
+    for (size_t i = 0; i < count && !s->crs && s->unit != 1; i++)
+        xyz[3 * i + 2] *= s->unit;
     if (s->to_scene)
         failed = geo_transform_points(s->to_scene, xyz, count);
     for (size_t i = 0; i < numbers; i++)

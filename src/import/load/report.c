@@ -233,6 +233,7 @@ bool report_add(noc_report *report, const noc_report_file *file, const geo_issue
     f.format = keep(report, f.format);
     f.crs = keep(report, f.crs);
     f.crs_given = keep(report, f.crs_given);
+    f.height_unit_by = keep(report, f.height_unit_by);
     /* the columns are in the arena already */
     f.line_count = geo_issues_count(issues);
     noc_report_line *lines = arena_alloc(&report->arena, f.line_count * sizeof(*lines));

@@ -231,6 +231,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         status =
             tell_height(r, GEO_GUESSED, "elevation of a lamp such as -9999, taken as missing", lamp->id, lamp->xyz[2]);
     }
+    if (lamp->metres)
+        points[0][2] /= height_unit_now(r);
     status = status ? status : place_points(r, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
     p.given = (given_place){ { NAN, NAN }, r->source };
     if (!status && r->given.len >= 2)
@@ -279,6 +281,8 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
         return status;
     geo_footprint local = *footprint;
     local.xyz = r->scratch.data;
+    if (footprint->bare && r->in->unit > 0)
+        local.height *= r->in->unit;
     return footprint_keep(r->im, r->in, r->index, &local);
 }
 
@@ -430,6 +434,8 @@ geo_sink sink_create(reading *r) {
                        .lamps_lost = &r->in->lamps_lost,
                        .decimal_sign = &r->in->file.decimal_sign,
                        .crs = on_crs,
+                       .heights = height_unit_heights,
+                       .height_unit = height_unit_now,
                        .appearance = r->im->params->textures ? on_appearance : NULL,
                        .begin_object = on_begin_object,
                        .polygon = on_polygon,

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-#define FLAT 0.002 /* m: outlines have no height, and houses in kilometres have one */
-
 /* ---- materials ---- */
 
 /* Façades and roofs differ from building to building. Diffuse reflectances, linear; their mean is near the class's own
@@ -139,11 +137,7 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     for (int c = 0; c < NOC_CLASS_COUNT && !in->object_repeated; c++)
         in->file.polygons_by_class[c] += now->by_class[c];
     in->file.polygons += in->object_repeated ? 0 : now->polygons;
-    double height = now->hi[2] - now->lo[2];
-    bool judged = now->kind == GEO_BUILDING && now->any && !in->object_repeated && height > FLAT;
-    if (judged && !array_push(&im->heights, (float)height))
-        return noc_no_memory(im->log, in->path);
-    if (judged && now->storeys >= 2 && !array_push(&im->storeys, (float)(height / now->storeys)))
+    if (!in->object_repeated && !units_see_building(im, in, now))
         return noc_no_memory(im->log, in->path);
     if (now->kind == GEO_BUILDING && im->object_mesh < im->scene->meshes.len && im->params->windows != NOC_SWITCH_OFF &&
         !array_push(&im->buildings, (taken_building){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
@@ -234,8 +228,6 @@ void take_destroy(importer *im) {
     geo_triangles_free(&im->green);
     geo_triangles_free(&im->squares);
     geo_triangles_free(&im->lots);
-    array_free(&im->heights);
-    array_free(&im->storeys);
     array_free(&im->lost);
     array_free(&im->buildings);
     array_free(&im->outlines);

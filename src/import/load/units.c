@@ -1,60 +1,30 @@
-/* Heights that are hardly metres: feet are read as metres where a file names a CRS of metres, or none. No file says so;
- * the middle of many buildings does. */
+/* Heights of lamps that are hardly metres: no file says so; where lamps hang in their part of the world does. */
 #include "import/load/load.h"
 
 #include <math.h>
-
-#define FEWEST 10 /* buildings that are evidence */
 
 static int by_value(const void *a, const void *b) {
     float x = *(const float *)a, y = *(const float *)b;
     return x < y ? -1 : x > y;
 }
 
-/* Feet where they bring a value between least and most, because whole countries measure in them; else the unit that
- * brings it next to what is usual; NULL where none brings it between. */
-static const char *unit_for(double value, double usual, double least, double most, double *factor) {
-    static const struct {
-        const char *name;
-        double metres;
-    } units[] = { { "feet", 0.3048 },      { "decimetres", 0.1 },
-                  { "centimetres", 0.01 }, { "millimetres", 0.001 },
-                  { "kilometres", 1000 },  { "metres, converted as if they were feet", 1 / 0.3048 } };
+/* Returns the unit, feet before all others, that brings the value between 2 m and `most`, next to 8 m; NULL: none. */
+static const char *unit_for(double value, double most, double *factor) {
+    static const double units[] = { 0.3048, 0.1, 0.01, 0.001 };
     const char *best = NULL;
     double nearest = INFINITY;
     for (size_t i = 0; i < NOC_COUNT(units); i++) {
-        double x = value * units[i].metres, off = fabs(log(x / usual));
-        if (x < least || x > most || off >= nearest)
+        double x = value * units[i], off = fabs(log(x / 8));
+        if (x < 2 || x > most || off >= nearest)
             continue;
         nearest = off;
-        best = units[i].name;
-        *factor = units[i].metres;
+        best = height_unit_name(units[i]);
+        *factor = units[i];
         if (i == 0)
             break;
     }
     return best;
 }
-
-static void judge(const importer *im, float *values, size_t count, const char *what, double usual, double least,
-                  double most) {
-    if (count < FEWEST)
-        return;
-    qsort(values, count, sizeof(*values), by_value);
-    double median = (double)values[count / 2], factor;
-    if (median >= least && median <= most)
-        return;
-    const char *unit = unit_for(median, usual, least, most, &factor);
-    if (unit)
-        noc_warn(
-            im->log,
-            "the median %s, of %zu, is %.3g m, which is hardly one: are heights in %s? Times %.5g it would be %.3g m",
-            what, count, median, unit, factor, median * factor);
-    else
-        noc_warn(im->log, "the median %s, of %zu, is %.3g m, which is hardly one: in which unit are heights?", what,
-                 count, median);
-}
-
-/* ---- lamps ---- */
 
 /* Where street lamps hang, m: the median of a town's, and what nine in ten of them do not exceed. Main roads have lamps
  * at 10 m and more (road_lamps.c), highways of North America at 15 m and 50 ft, high masts are few. Where poles are
@@ -69,30 +39,8 @@ static const hanging hangings[] = {
     { 13, 18, 8, 2, "street lamps of a land of feet" },
 };
 
-/* The United States and Canada, roughly: longitudes and latitudes. */
-static bool measures_in_feet(const double lonlat[2]) {
-    static const double boxes[][4] = {
-        { -125, 32.5, -114, 49 }, { -114, 31.3, -106.5, 49 }, { -106.5, 29, -101, 49 },   { -101, 25.8, -97, 49 },
-        { -97, 24.4, -80, 49 },   { -80, 28, -66, 49 },       { -141, 49, -52, 84 },      { -66, 43, -52, 49 },
-        { -170, 51, -129, 72 },   { -161, 18.5, -154, 22.5 }, { -68, 17.5, -64.5, 18.6 },
-    };
-    for (size_t i = 0; i < NOC_COUNT(boxes); i++)
-        if (lonlat[0] >= boxes[i][0] && lonlat[1] >= boxes[i][1] && lonlat[0] <= boxes[i][2] &&
-            lonlat[1] <= boxes[i][3])
-            return true;
-    return false;
-}
-
-/* By the CRS of the file, whose unit may be the foot, or by where its first lamp stands. */
 static const hanging *hanging_of(const input *in) {
-    const source_crs *source = in->lamp_given.source;
-    double lonlat[2];
-    if (!source || !source->crs)
-        return &hangings[0];
-    bool feet = !geo_crs_is_geographic(source->crs) && !geo_crs_is_metric(source->crs);
-    feet = feet || (geo_crs_lonlat_near(source->crs, in->lamp_given.xy[0], in->lamp_given.xy[1], lonlat) &&
-                    measures_in_feet(lonlat));
-    return &hangings[feet];
+    return &hangings[units_of_feet(in->lamp_given.source, in->lamp_given.xy)];
 }
 
 bool units_see_lamp(input *in, const pending_lamp *p) {
@@ -108,6 +56,8 @@ bool units_see_lamp(input *in, const pending_lamp *p) {
 void units_forget(input *in) {
     array_free(&in->lamp_heights);
     array_free(&in->lantern_heights);
+    array_free(&in->sizes);
+    array_free(&in->feet);
 }
 
 /* The column that most of the heights come from. */
@@ -124,7 +74,7 @@ static const char *height_column(const noc_report_file *file) {
 /* Heights that no unit makes plausible are told of one by one. */
 static void warn_of_lamps(importer *im, input *in, const hanging *h, const char *what, double value, double middle) {
     double factor;
-    const char *unit = unit_for(middle, 8, 2, h->median, &factor), *column = height_column(&in->file);
+    const char *unit = unit_for(middle, h->median, &factor), *column = height_column(&in->file);
     if (!unit)
         return;
     noc_warn(
@@ -165,9 +115,8 @@ static void check_lamps(importer *im, input *in) {
     }
 }
 
-void units_check(importer *im) {
-    judge(im, im->heights.data, im->heights.len, "height of a building", 8, 2, 60);
-    judge(im, im->storeys.data, im->storeys.len, "height of a building's storey", 3.2, 1.8, 7);
+noc_status units_check(importer *im) {
     for (size_t i = 0; i < im->input_count; i++)
         check_lamps(im, &im->inputs[i]);
+    return units_check_buildings(im);
 }

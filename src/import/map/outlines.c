@@ -31,6 +31,12 @@ bool outline_layer(const char *name) {
     return false;
 }
 
+/* Returns true if no unit stands behind it. */
+static bool is_number(const char *text) {
+    double value;
+    return noc_parse_double(text, &value);
+}
+
 enum { WHOLE, FROM, LEVELS, FROM_LEVEL, ROOF, KEYS };
 
 static void read_one(const lamp_tag *tag, int what, double *out) {
@@ -68,15 +74,19 @@ void outline_read(const lamp_tag *tags, size_t count, geo_footprint *footprint) 
         [ROOF] = { "roofheight", "buildingroofheight" },
     };
     double value[KEYS] = { NAN, NAN, NAN, NAN, NAN };
+    bool bare = false;
     for (size_t i = 0; i < count; i++) {
         char folded[64];
         lamp_fold(tags[i].key, false, folded, sizeof(folded));
         for (int what = 0; what < KEYS; what++)
             for (size_t k = 0; k < NOC_COUNT(keys[what]) && keys[what][k]; k++)
-                if (!strcmp(folded, keys[what][k]))
+                if (!strcmp(folded, keys[what][k])) {
+                    bare = what == WHOLE && isnan(value[WHOLE]) ? is_number(tags[i].value) : bare;
                     read_one(&tags[i], what, &value[what]);
+                }
     }
     footprint->height = value[WHOLE];
+    footprint->bare = bare;
     footprint->min_height = value[FROM];
     footprint->levels = value[LEVELS];
     footprint->min_level = value[FROM_LEVEL];

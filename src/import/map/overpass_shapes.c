@@ -154,6 +154,7 @@ static noc_status emit_polygon(shape_list *list, const area_kind *kind) {
                                                      list->area_rings.data, list->area_xyz.data });
     geo_footprint footprint = { .id = list->tags.id };
     outline_read(list->tags.tags.data, list->tags.tags.len, &footprint);
+    footprint.bare = false; /* OpenStreetMap's are metres */
     footprint.ring_count = list->area_rings.len;
     footprint.ring_size = list->area_rings.data;
     footprint.xyz = list->area_xyz.data;

@@ -90,6 +90,7 @@ static noc_status read_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType t
     *is = true;
     geo_footprint footprint = { .id = m->tags.id };
     outline_read(m->tags.tags.data, m->tags.tags.len, &footprint);
+    footprint.bare = footprint.bare && m->format->kind != MAP_OSM; /* there they are metres */
     m->writer.footprints++;
     return emit_area(m, g, type, &footprint, NOC_CLASS_OTHER);
 }

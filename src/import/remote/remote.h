@@ -49,6 +49,7 @@ enum {
     REMOTE_ROAD,      /* geo_road, texts: id, name, coordinates */
     REMOTE_AREA,      /* count of rings, class, text: id, points of each ring, their coordinates */
     REMOTE_TRACK,     /* count of parts, timed?, text: id, points of each part, their coordinates, their times */
+    REMOTE_HEIGHTS,   /* double: metres of a unit of the heights that follow */
 };
 
 typedef struct remote_head {
@@ -65,7 +66,7 @@ typedef struct remote_object {
 typedef struct remote_footprint {
     uint64_t rings;
     double height, min_height, levels, min_level, roof_height;
-    uint64_t use;
+    uint64_t use, bare;
 } remote_footprint;
 typedef struct remote_image {
     uint32_t there, wrap, cutoff;

@@ -44,6 +44,13 @@ static noc_status on_crs(void *ctx, const char *srs_name, const char *place, boo
     return NOC_OK;
 }
 
+static noc_status on_heights(void *ctx, double metres) {
+    serving *s = ctx;
+    remote_put(&s->out, &metres, sizeof(metres));
+    emit(s, REMOTE_HEIGHTS);
+    return NOC_OK;
+}
+
 static noc_status on_begin_object(void *ctx, const geo_object *object) {
     serving *s = ctx;
     remote_object o = { (int32_t)object->kind, object->lod };
@@ -75,7 +82,8 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
 
 static noc_status on_footprint(void *ctx, const geo_footprint *f) {
     serving *s = ctx;
-    remote_footprint r = { f->ring_count, f->height, f->min_height, f->levels, f->min_level, f->roof_height, f->use };
+    remote_footprint r = { f->ring_count, f->height,      f->min_height, f->levels,
+                           f->min_level,  f->roof_height, f->use,        f->bare };
     remote_put(&s->out, &r, sizeof(r));
     remote_put_text(&s->out, f->id);
     put_rings(s, f->ring_count, f->ring_size, f->xyz);
@@ -224,6 +232,7 @@ static void serve(serving *s) {
                       .issues = issues,
                       .lamps_lost = &s->lamps_lost,
                       .crs = on_crs,
+                      .heights = on_heights,
                       .begin_object = on_begin_object,
                       .polygon = on_polygon,
                       .end_object = on_end_object,

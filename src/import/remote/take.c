@@ -41,7 +41,7 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
     lamp.tags = remote_get_text(one);
     bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
                  (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe) &&
-                 is_bool(&lamp.tells_street);
+                 is_bool(&lamp.tells_street) && is_bool(&lamp.metres);
     lamp.fitting = NULL;
     /* or NaN */
     bool headings = lamp.heading_count >= 0 && lamp.heading_count <= GEO_HEADINGS;
@@ -107,13 +107,20 @@ static noc_status take_footprint(remote_taker *t, remote_record *one) {
     const char *id = remote_get_text(one);
     const double most = 1000; /* m, storeys; or NaN */
     if (one->bad || t->in_object || t->parts || !t->sink->footprint || f.height > most || f.min_height < 0 ||
-        f.levels > most || f.min_level < 0 || f.roof_height > most || f.use >= NOC_USE_COUNT)
+        f.levels > most || f.min_level < 0 || f.roof_height > most || f.use >= NOC_USE_COUNT || f.bare > 1)
         return garbled(t);
     noc_status status = take_rings(t, one, f.rings, 3);
-    const geo_footprint footprint = {
-        id,           t->rings.len, t->rings.data, t->xyz.data,   f.height,
-        f.min_height, f.levels,     f.min_level,   f.roof_height, (noc_building_use)f.use
-    };
+    const geo_footprint footprint = { id,
+                                      t->rings.len,
+                                      t->rings.data,
+                                      t->xyz.data,
+                                      f.height,
+                                      f.min_height,
+                                      f.levels,
+                                      f.min_level,
+                                      f.roof_height,
+                                      f.bare == 1,
+                                      (noc_building_use)f.use };
     return status ? status : t->sink->footprint(t->sink->ctx, &footprint);
 }
 
@@ -312,6 +319,14 @@ static noc_status take_end(remote_taker *t, remote_record *one) {
     return t->error ? noc_error(t->sink->log, (noc_status)end.status, "%s", t->error) : NOC_OK;
 }
 
+static noc_status take_heights(remote_taker *t, remote_record *one) {
+    double metres = 0;
+    remote_get(one, &metres, sizeof(metres));
+    if (one->bad || !t->placed || !(metres > 0) || !isfinite(metres))
+        return garbled(t);
+    return t->sink->heights ? t->sink->heights(t->sink->ctx, metres) : NOC_OK;
+}
+
 static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     switch (kind) {
     case REMOTE_LOG: return take_log(t, one);
@@ -321,6 +336,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
         t->placed = !one->bad;
         return one->bad ? garbled(t) : t->sink->crs(t->sink->ctx, srs_name, place, &lat_first);
     }
+    case REMOTE_HEIGHTS: return take_heights(t, one);
     case REMOTE_LAMP: return take_lamp(t, one);
     case REMOTE_MATERIAL: return take_material(t, one);
     case REMOTE_MESH: return take_mesh(t, one);
