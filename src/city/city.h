@@ -125,8 +125,11 @@ typedef struct city_paved {
     size_t triangles;
 } city_paved;
 
+/* Sets the decks of roads that are bridges (local metres), over the ground that the scene has; in the arena. */
+noc_status city_level_decks(const noc_scene *scene, geo_road *roads, size_t count, noc_arena *arena);
+
 /* Makes surfaces of roads of maps (local metres), on the ground that the scene has: roads where cars drive, pavements
- * where one walks, each as wide as its carriageway and named by its id. Bridges go straight from end to end. Bounded in
+ * where one walks, each as wide as its carriageway and named by its id. Bridges follow their decks. Bounded in
  * triangles and time: what is more is counted. progress may be NULL; NOC_ERR_CANCELLED where it says so. */
 noc_status city_pave_roads(noc_scene *scene, const geo_road *roads, size_t count, const noc_progress *progress,
                            city_paved *paved);

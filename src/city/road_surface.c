@@ -123,14 +123,36 @@ static double ground_at(const paver *p, double x, double y) {
     return noc_scene_ground(p->scene, x, y, &z) ? z : NAN;
 }
 
-/* Bridges are straight from end to end, and nowhere under the ground. */
-static void span(paver *p, size_t columns) {
+/* Heights along a road's deck, at shares of its length that rise. */
+typedef struct deck_walk {
+    const geo_road *road;
+    double total, done; /* m; up to point `at` */
+    size_t at;
+} deck_walk;
+
+static double deck_height(deck_walk *w, double along) {
+    const geo_road *road = w->road;
+    double want = along * w->total;
+    for (; w->at + 1 < road->point_count; w->at++) {
+        const double *a = road->xyz + 3 * w->at;
+        double length = hypot(a[3] - a[0], a[4] - a[1]), t = length > 0 ? (want - w->done) / length : 1;
+        if (t <= 1 || w->at + 2 == road->point_count)
+            return road->deck[w->at] + (road->deck[w->at + 1] - road->deck[w->at]) * NOC_CLAMP(t, 0, 1);
+        w->done += length;
+    }
+    return NAN;
+}
+
+/* Bridges follow their decks, straight from end to end where that is not known, and are nowhere under the ground. */
+static void span(paver *p, const geo_road *road, size_t columns) {
     size_t rows = p->sections.len, middle = columns / 2;
+    deck_walk walk = { .road = road, .total = geo_road_length(road) };
     double a = p->height.data[middle], b = p->height.data[(rows - 1) * columns + middle];
     a = isfinite(a) ? a : b;
     b = isfinite(b) ? b : a;
     for (size_t i = 0; i < rows; i++) {
-        double z = a + (b - a) * p->sections.data[i].along;
+        double deck = road->deck ? deck_height(&walk, p->sections.data[i].along) : NAN;
+        double z = isfinite(deck) ? deck : a + (b - a) * p->sections.data[i].along;
         for (size_t c = 0; c < columns; c++) {
             double *h = &p->height.data[i * columns + c];
             *h = isfinite(*h) ? fmax(*h, z) : z;
@@ -208,7 +230,7 @@ static void ask_heights(paver *p, const geo_road *road, size_t columns) {
     if (p->no_memory)
         return;
     if (road->bridge)
-        span(p, columns);
+        span(p, road, columns);
     raise_over_edges(p, columns);
 }
 

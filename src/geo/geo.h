@@ -235,10 +235,13 @@ typedef struct geo_road {
     double width, speed; /* m, of the carriageway; km/h, the limit */
     size_t point_count;  /* 2 or more */
     const double *xyz;   /* file CRS; z NaN where it stands on the ground */
+    const double *deck;  /* heights of a bridge's deck at its points; NaN: unknown; NULL: none; never of a reader's */
 } geo_road;
 
 /* Of the carriageway, m: as it is told, else by its lanes, else as wide as its class usually is. */
 double geo_road_width(const geo_road *road);
+/* Returns the height of the deck at the point of the road that is nearest to xy; NaN: unset. *off: its distance [m]. */
+double geo_road_deck(const geo_road *road, const double xy[2], double *off);
 double geo_road_length(const geo_road *road); /* seen from above, in the unit of its coordinates */
 
 /* A car's track, in parts between which nothing is driven; z is of no use. seconds: when it is at each point, from any

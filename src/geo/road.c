@@ -64,6 +64,23 @@ double geo_road_width(const geo_road *road) {
                                : usual[road->cls].both_ways;
 }
 
+double geo_road_deck(const geo_road *road, const double xy[2], double *off) {
+    double z = NAN;
+    *off = INFINITY;
+    for (size_t i = 0; i + 1 < road->point_count; i++) {
+        const double *a = road->xyz + 3 * i, *b = a + 3;
+        double d[2] = { b[0] - a[0], b[1] - a[1] }, length2 = d[0] * d[0] + d[1] * d[1];
+        double t = length2 > 0 ? ((xy[0] - a[0]) * d[0] + (xy[1] - a[1]) * d[1]) / length2 : 0;
+        t = NOC_CLAMP(t, 0, 1);
+        double from = hypot(a[0] + t * d[0] - xy[0], a[1] + t * d[1] - xy[1]);
+        if (from >= *off)
+            continue;
+        *off = from;
+        z = road->deck ? road->deck[i] + t * (road->deck[i + 1] - road->deck[i]) : NAN;
+    }
+    return z;
+}
+
 double geo_road_length(const geo_road *road) {
     double sum = 0;
     for (size_t i = 0; i + 1 < road->point_count; i++)

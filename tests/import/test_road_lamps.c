@@ -214,6 +214,56 @@ static void bridge_over_a_valley(void **state) {
     assert_true(fabs(z + scene->origin[2] - 28) < 0.01);
 }
 
+#define PIECE(id, more, from, to)                                                                                      \
+    LINE(id, "\"highway\":\"residential\",\"bridge\":\"yes\"" more, "[6900" from ",5330000],[690" to ",5330000]")
+#define SAME_MAP(middle)                                                                                               \
+    MAP(APPROACHES "," middle "," HIGH("node/1", "", "[690055,5330004]") "," HIGH("node/2", "", "[690085,5329998]"))
+
+/* A bridge of several ways has one deck, whatever ends in the air: pieces of other layers, drawn the other way, with
+ * stairs at a joint; a ramp that leaves it is between. Over a street that meets it the deck is on the ground. */
+static void bridge_of_pieces(void **state) {
+    static const struct {
+        const char *middle;
+        double first, second; /* heights of the two lamps' feet */
+    } rows[] = {
+        { PIECE("way/2", "", "39", "070") "," PIECE("way/5", "", "70", "101"), 40, 40 },
+        { PIECE("way/2", "", "39", "047") "," PIECE("way/5", ",\"layer\":\"2\"", "71", "047") "," PIECE("way/6", "",
+                                                                                                        "71", "101"),
+          40, 40 },
+        { PIECE("way/2", "", "39", "070") "," PIECE("way/5", "", "70",
+                                                    "101") "," LINE("way/7", "\"highway\":\"steps\"",
+                                                                    "[690070,5330000],[690070,5330020]"),
+          40, 40 },
+        { PIECE("way/2", "", "39", "070") "," PIECE("way/5", "", "70",
+                                                    "101") "," LINE("way/7", "\"highway\":\"residential\"",
+                                                                    "[690070,5330000],[690070,5330020]"),
+          28 + 12 * 15. / 31, 28 + 12 * 15. / 31 },
+        /* the ramp comes down 31 m beside the middle, where all three pieces are 31 m long: (40 + 40 + 28) / 3 = 36 */
+        { PIECE("way/2", "", "39", "070") "," PIECE("way/5", "", "70", "101") "," LINE(
+              "way/7", "\"highway\":\"residential\",\"bridge\":\"yes\"", "[690070,5330000],[690070,5330031]"),
+          40 - 4 * 16. / 31, 40 - 4 * 16. / 31 },
+        /* it joins a way that is not cut */
+        { PIECE("way/2", "", "39", "101") "," LINE("way/7", "\"highway\":\"residential\",\"bridge\":\"yes\"",
+                                                   "[690085,5330031],[690070,5330031]"),
+          40, 40 },
+    };
+    (void)state;
+    for (size_t i = 0; i < 2 * NOC_COUNT(rows); i++) {
+        char text[4000];
+        snprintf(text, sizeof(text), SAME_MAP("%s"), rows[i / 2].middle);
+        noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+        params.map_surfaces = i % 2 ? NOC_SWITCH_ON : NOC_SWITCH_OFF;
+        load_params(&params, valley(), write_file("pieces.json", text));
+        double first = height_of(55, 4) - 5.98, second = height_of(85, -2) - 5.98, z;
+        if (fabs(first - rows[i / 2].first) > .1 || fabs(second - rows[i / 2].second) > .1)
+            fail_msg("row %zu: %g, %g", i / 2, first, second);
+        if (i % 2 && (!noc_scene_highest(scene, 1u << NOC_CLASS_ROAD, 690055 - scene->origin[0],
+                                         5330000 - scene->origin[1], &z) ||
+                      fabs(z + scene->origin[2] - rows[i / 2].first) > .1))
+            fail_msg("row %zu: surface at %g", i / 2, z + scene->origin[2]);
+    }
+}
+
 static void box(void **state) {
     const char *plain =
         write_file("plain.json", MAP(LIT("way/1") "," LINE("way/9", "\"highway\":\"residential\",\"lit\":\"yes\"",
@@ -298,6 +348,7 @@ static int finish(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bridge_over_a_valley),
+        cmocka_unit_test(bridge_of_pieces),
         cmocka_unit_test(when),
         cmocka_unit_test(stable),
         cmocka_unit_test(water),

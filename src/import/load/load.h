@@ -488,7 +488,8 @@ noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 void road_lamps_face(importer *im, const struct city_roads *roads);
 /* Roads that a lamp at a place stands beside, where that is asked for. */
 lamp_roads road_lamps_near(const importer *im, const double xy[2]);
-/* Lamps on bridges of maps stand on the line between the ground at their ends, which must be there, and no roads on it.
+/* Levels the decks of bridges of maps over the ground, which must be there, and no roads on it; lamps on them stand
+ * there.
  */
 noc_status road_lamps_raise(importer *im);
 

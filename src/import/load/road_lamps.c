@@ -128,40 +128,16 @@ lamp_roads road_lamps_near(const importer *im, const double xy[2]) {
 #define OFF 3.0    /* m between a lamp's elevation and the deck that it stands on */
 #define RAISED 1.0 /* m between a deck and the ground that make a difference */
 
-/* m from the middle of the road to a place. */
-static double distance_to(const geo_road *road, const double xy[2]) {
-    double nearest = INFINITY;
-    for (size_t i = 0; i + 1 < road->point_count; i++) {
-        const double *a = road->xyz + 3 * i, *b = a + 3;
-        double d[2] = { b[0] - a[0], b[1] - a[1] }, length2 = d[0] * d[0] + d[1] * d[1];
-        double t = length2 > 0 ? ((xy[0] - a[0]) * d[0] + (xy[1] - a[1]) * d[1]) / length2 : 0;
-        t = NOC_CLAMP(t, 0, 1);
-        nearest = NOC_MIN(nearest, hypot(a[0] + t * d[0] - xy[0], a[1] + t * d[1] - xy[1]));
-    }
-    return nearest;
-}
-
-/* Height of a bridge's deck at a place: on the line between the ground at its ends. False: it is nowhere above the
- * ground there. */
-static bool deck_at(const importer *im, const geo_road *road, const double xy[2], double *deck) {
-    const double *a = road->xyz, *b = road->xyz + 3 * (road->point_count - 1);
-    double low, from, to;
-    if (!noc_scene_ground(im->scene, xy[0], xy[1], &low) || !noc_scene_ground(im->scene, a[0], a[1], &from) ||
-        !noc_scene_ground(im->scene, b[0], b[1], &to))
-        return false;
-    double before = hypot(xy[0] - a[0], xy[1] - a[1]), behind = hypot(xy[0] - b[0], xy[1] - b[1]);
-    *deck = from + (to - from) * before / NOC_MAX(before + behind, 1e-9);
-    return *deck > low + RAISED;
-}
-
 static void put_on_deck(importer *im, const city_roads *roads, pending_lamp *p) {
     geo_lamp *lamp = &p->lamp;
     const geo_road *road = p->along ? p->along : city_roads_beside(roads, lamp->xyz, NULL);
-    double deck;
+    double off, low;
     if (!road || !road->bridge || lamp->body_heads)
         return;
-    bool on = p->along || distance_to(road, lamp->xyz) <= geo_road_width(road) / 2 + KERB;
-    if (!on || !deck_at(im, road, lamp->xyz, &deck) || fabs(lamp->xyz[2] - deck) > OFF)
+    double deck = geo_road_deck(road, lamp->xyz, &off);
+    bool on = (p->along || off <= geo_road_width(road) / 2 + KERB) &&
+              noc_scene_ground(im->scene, lamp->xyz[0], lamp->xyz[1], &low) && deck > low + RAISED;
+    if (!on || fabs(lamp->xyz[2] - deck) > OFF)
         return;
     lamp->xyz[2] = deck;
     lamp->on_deck = true;
@@ -174,8 +150,11 @@ noc_status road_lamps_raise(importer *im) {
     bool bridges = false;
     for (size_t i = 0; i < im->roads.len && !bridges; i++)
         bridges = im->roads.data[i].bridge;
-    if (!bridges || !im->lamps.len)
+    if (!bridges)
         return NOC_OK;
+    noc_status status = city_level_decks(im->scene, im->roads.data, im->roads.len, &im->names);
+    if (status || !im->lamps.len)
+        return status;
     if (!im->roads_by_place && !(own = city_roads_create(im->roads.data, im->roads.len)))
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->lamps.len; i++)

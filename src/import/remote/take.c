@@ -130,6 +130,7 @@ static noc_status take_road(remote_taker *t, remote_record *one) {
         return garbled(t);
     road.id = remote_get_text(one);
     road.name = remote_get_text(one);
+    road.deck = NULL;
     bool flags = is_bool(&road.link) && is_bool(&road.roundabout) && is_bool(&road.bridge) && is_bool(&road.tunnel) &&
                  is_bool(&road.motor);
     bool kinds = (unsigned)road.cls < GEO_ROAD_CLASSES && (unsigned)road.lit <= GEO_LIT_YES && road.oneway >= -1 &&
