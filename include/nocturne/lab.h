@@ -181,8 +181,11 @@ typedef struct noc_lab_progress {
 } noc_lab_progress;
 
 typedef struct noc_lab_params {
-    const char *folder;       /* that all is written to, made where it is missing; needed */
-    const char *cache;        /* that references are kept in; NULL: nocturne in the user's cache folder */
+    const char *folder; /* that all is written to, made where it is missing; needed */
+    const char *cache;  /* that references are kept in; NULL: nocturne in the user's cache folder */
+    /* Several processes may share a spec and a folder: this one measures part `part`, from 1, of `parts` alone, into a
+     * table of its own. 0, 0: all. Parts are blocks of runs in the order of cameras. */
+    int part, parts;
     noc_device_params device; /* whatever the spec names; its device text must outlive the lab */
     /* May be NULL. Called from the thread that works; return false to end the work, which can be gone on with. */
     bool (*progress)(void *user, const noc_lab_progress *progress);
@@ -207,8 +210,12 @@ NOC_API void noc_lab_destroy(noc_lab *lab);
 /* Measures all that is not there yet, and keeps each row in results.csv as soon as it is measured. After any failure
  * and NOC_ERR_CANCELLED, the next call, of this noc_lab or of another with the same folder, goes on from there. */
 NOC_API noc_status noc_lab_run(noc_lab *lab);
-/* Writes report.md, summary.md and their plots. After a noc_lab_run that came to its end. */
+/* Writes report.md, summary.md and their plots. After a noc_lab_run that came to its end, of all runs. */
 NOC_API noc_status noc_lab_write_report(noc_lab *lab);
+/* Makes results.csv and the report of the tables of all parts, as one process would have them. Call with the params of
+ * a part, once its noc_lab, whose run came to its end, is destroyed: the part that ends last joins. *joined: they are
+ * there. false, with NOC_OK: other parts work in the folder, or rows are missing. Waits while another process joins. */
+NOC_API noc_status noc_lab_join(const noc_lab_spec *spec, const noc_lab_params *params, bool *joined, noc_log *log);
 
 typedef struct noc_lab_state {
     const char *folder; /* the lab's */

@@ -7,8 +7,9 @@
 
 typedef struct experiment_args {
     cli_args common;
-    const char *output, *cache;
+    const char *output, *cache, *part_text;
     noc_device_params device;
+    cli_part part;
 } experiment_args;
 
 #define A experiment_args
@@ -17,6 +18,7 @@ static const noc_option own_options[] = {
       "folder for rows, plots, crops and report; else the spec's name without .json" },
     { "cache", "Output", NOC_OPTION_TEXT, offsetof(A, cache), 0, 0, NULL, "FOLDER",
       "folder that references are kept in; else nocturne in the user's cache folder" },
+    CLI_OPTION_PART(A, "Output", part_text),
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
@@ -87,6 +89,7 @@ static int work(const experiment_args *args, noc_lab *lab) {
     noc_status status = noc_lab_run(lab);
     noc_lab_state state;
     char rows[64];
+    const cli_part *part = &args->part;
     cli_progress_clear();
     noc_lab_get_state(lab, &state);
     if (status == NOC_ERR_CANCELLED && cli_interrupted()) {
@@ -95,10 +98,31 @@ static int work(const experiment_args *args, noc_lab *lab) {
     }
     if (status && state.rows_made)
         tell_part("stopped", &state);
+    noc_text_many(rows, state.rows, "row");
+    if (part->count > 1 && !status && !args->common.quiet)
+        printf("%s: %s in part %d of %d, %zu of them made now\n", state.folder, rows, part->number, part->count,
+               state.rows_made);
+    if (part->count > 1)
+        return status ? CLI_FAILURE : CLI_OK;
     status = status ? status : noc_lab_write_report(lab);
     if (!status && !args->common.quiet)
-        printf("%s/report.md: %s, %zu of them made now\n", state.folder, noc_text_many(rows, state.rows, "row"),
-               state.rows_made);
+        printf("%s/report.md: %s, %zu of them made now\n", state.folder, rows, state.rows_made);
+    return status ? CLI_FAILURE : CLI_OK;
+}
+
+/* The part that ends last makes the table and the report of all. */
+static int join(const experiment_args *args, const noc_lab_spec *spec, const noc_lab_params *params, noc_log *log) {
+    bool joined;
+    noc_status status = noc_lab_join(spec, params, &joined, log);
+    cli_progress_clear();
+    if (status == NOC_ERR_CANCELLED && cli_interrupted()) {
+        cli_error("interrupted: all rows of this part are there; the same command joins them");
+        return CLI_INTERRUPTED + cli_interrupted();
+    }
+    if (!status && !args->common.quiet && joined)
+        printf("%s/report.md: of %d parts\n", params->folder, args->part.count);
+    else if (!status && !args->common.quiet)
+        printf("%s: no report yet: the part that ends last makes it, or the same command again\n", params->folder);
     return status ? CLI_FAILURE : CLI_OK;
 }
 
@@ -122,11 +146,15 @@ static int run_spec(const experiment_args *args, const noc_lab_spec *spec, noc_l
     noc_lab_params params = { .folder = folder,
                               .cache = args->cache,
                               .device = args->device,
+                              .part = args->part.number,
+                              .parts = args->part.count,
                               .progress = progress,
                               .note = args->common.quiet ? NULL : note };
     noc_lab *lab;
     int status = noc_lab_create(spec, &params, &lab, log) ? CLI_FAILURE : work(args, lab);
     noc_lab_destroy(lab);
+    if (!status && args->part.count > 1)
+        status = join(args, spec, &params, log);
     free(folder);
     return status;
 }
@@ -136,6 +164,7 @@ static int run(void *arguments) {
     if (args->common.input_count != 1)
         return cli_usage(&cli_experiment, "one spec, a JSON file: docs/experiments.md tells what it holds");
     int status = cli_check_device(&cli_experiment, &args->device);
+    status = status ? status : cli_choose_part(&cli_experiment, &args->common, args->part_text, &args->part);
     if (status)
         return status;
     noc_log *log = cli_log_create(&args->common);

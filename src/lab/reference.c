@@ -5,6 +5,7 @@
 #include "lab/measure.h"
 #include "lab/motion.h"
 #include "lab/noise.h"
+#include "lab/parts.h"
 
 #include <nocturne/nocturne.h>
 #include <unistd.h>
@@ -142,26 +143,53 @@ static noc_status make(lab_session *lab, const char *view, const char *path, lab
     return status;
 }
 
-noc_status lab_make_reference(lab_session *lab, size_t camera) {
+noc_status lab_place_camera(lab_session *lab, size_t camera) {
     noc_status status = lab_place_cameras(lab, camera);
-    if (status)
-        return status;
+    if (!status)
+        lab_name_reference(lab);
+    return status;
+}
+
+static void tell_cached(const lab_session *lab, const char *view, const char *path, lab_truth *truth) {
+    lab_read_truth(path, truth);
+    bool other = lab_backend_of(truth->device) != lab->device.backend;
+    lab_note(lab, "%s: reference from %s%s%s", view, path, other ? ", rendered by " : "", other ? truth->device : "");
+}
+
+/* Processes that need the same reference make it once: the others wait. One that is killed holds no lock. */
+static noc_status make_once(lab_session *lab, const char *view, const char *path, lab_truth *truth) {
+    char what[LAB_TEXT + 20], *name = noc_format("%s.lock", path);
+    if (!name)
+        return noc_no_memory(lab->log, view);
+    noc_snprintf(what, sizeof(what), "%s: reference", view);
+    int lock = lab_wait_for(lab, name, what);
+    noc_status status = lab->cancelled ? noc_cancelled(lab->log, "lab: cancelled") : NOC_OK;
+    lab->reference = status ? NULL : read_cached(lab, path);
+    if (lab->reference)
+        tell_cached(lab, view, path, truth);
+    else
+        status = status ? status : make(lab, view, path, truth);
+    if (lock >= 0) {
+        unlink(name);
+        close(lock);
+    }
+    free(name);
+    return status;
+}
+
+noc_status lab_make_reference(lab_session *lab, size_t camera) {
+    noc_status status = NOC_OK;
     char view[LAB_TEXT];
     lab_truth *truth = &lab->truths[camera];
     lab_view_name(lab->spec, camera, view);
-    lab_name_reference(lab);
     char *path = noc_format("%s/reference-%s.exr", lab->cache, lab->reference_key);
     if (!path)
         return noc_no_memory(lab->log, view);
     lab->reference = read_cached(lab, path);
-    if (lab->reference) {
-        lab_read_truth(path, truth);
-        bool other = lab_backend_of(truth->device) != lab->device.backend;
-        lab_note(lab, "%s: reference from %s%s%s", view, path, other ? ", rendered by " : "",
-                 other ? truth->device : "");
-    } else {
-        status = make(lab, view, path, truth);
-    }
+    if (lab->reference)
+        tell_cached(lab, view, path, truth);
+    else
+        status = make_once(lab, view, path, truth);
     if (!status && noc_image_is_black(lab->reference))
         noc_warn(lab->log, "%s: the reference is black, so errors say nothing", view);
     free(path);

@@ -5,6 +5,7 @@
 #include "lab/session.h"
 
 noc_status lab_load_scene(lab_session *lab, size_t scene);
-noc_status lab_make_reference(lab_session *lab, size_t camera); /* camera placed, reference read or rendered */
+noc_status lab_place_camera(lab_session *lab, size_t camera);   /* and its reference is named */
+noc_status lab_make_reference(lab_session *lab, size_t camera); /* read or rendered, once the camera is placed */
 
 #endif

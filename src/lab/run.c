@@ -23,7 +23,7 @@ static bool frame_progress(void *user, int frame, double done) {
     lab_session *lab = m->lab;
     const lab_config *config = &lab->spec->configs[m->run->config];
     double share = config->seconds > 0 ? m->cpu / config->seconds : (frame - 1 + done) / m->frames;
-    share = ((double)lab->runs_done + share) / (double)lab->run_count;
+    share = ((double)lab->runs_done + share) / (double)lab->runs_mine;
     double spent = noc_wall_seconds() - lab->started - lab->reference_seconds, left = spent / share - spent;
     if (lab->references_made) /* those to come, as if none were there */
         left += lab->reference_seconds / (double)lab->references_made *
@@ -218,6 +218,13 @@ static noc_status frames_missing(const lab_session *lab, const lab_run *run, int
         free(picture);
     }
     return NOC_OK;
+}
+
+noc_status lab_run_misses(const lab_session *lab, const lab_run *run, bool *misses) {
+    int last = 0;
+    noc_status status = frames_missing(lab, run, &last);
+    *misses = *misses || last;
+    return status;
 }
 
 noc_status lab_measure_run(lab_session *lab, lab_run *run) {

@@ -4,11 +4,12 @@
  *
  *     file, spec     what a spec asks for; files
  *     member         of JSON objects, by option tables    <- config, cameras <- read
- *     session        this                                 <- motion <- keys, noise <- reference
- *     table          results.csv                          } <- run
+ *     session        this                                 <- motion <- keys, noise, parts <- reference
+ *     table          results.csv                          } <- run, parts
  *     measure        one configuration, frame by frame    }
  *     series         means over repetitions               <- charts, plot (on svg), summary (on markdown) <- report
  *     sheet          pictures side by side                <- crops
+ *     parts          tables of processes that share a spec; who waits for whom
  *     lab            all of them: noc_lab_run and the others
  *     timer          by itself: time without a reference
  */
@@ -86,6 +87,12 @@ typedef struct lab_stored {
     double values[COL_COUNT];
 } lab_stored;
 
+/* The table of a part that this session joins. */
+typedef struct lab_part {
+    int lock; /* its descriptor */
+    char *path;
+} lab_part;
+
 /* What a scene holds, for the report. */
 typedef struct lab_holdings {
     noc_scene_info info; /* its texts belong to the scene, which is gone */
@@ -106,12 +113,20 @@ typedef struct noc_lab {
     noc_lab_params params; /* folder and cache are the session's own below */
     const lab_spec *spec;
     char *folder, *cache;
-    int lock; /* of the folder; -1: none */
+    int lock;      /* of the folder; -1: none */
+    int part_lock; /* of this part's table; -1: none */
+    int guard;     /* held while parts begin or join; -1: not */
+    bool joining;  /* the session makes results.csv of parts, and measures nothing */
+    bool busy;     /* it does not: other parts work in the folder, */
+    bool joined;   /* or another process has done it, */
+    bool missing;  /* or rows or pictures are missing */
+    NOC_ARRAY(lab_part) taken;
     noc_log *log;
     FILE *csv;
     NOC_ARRAY(lab_stored) stored;
     lab_run *runs; /* camera by camera, repetition, configuration */
     size_t run_count, runs_done;
+    size_t runs_mine;               /* of run_count */
     size_t rows_done, rows_old;     /* old: of earlier sessions */
     size_t rows_broken, rows_twice; /* of results.csv, as it was */
     double started, reference_seconds;

@@ -145,9 +145,7 @@ static noc_status read_row(lab_session *lab, char *line) {
     return NOC_OK;
 }
 
-/* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such
- * table. */
-static noc_status read_table(lab_session *lab, const char *path, long *whole) {
+noc_status lab_read_table(lab_session *lab, const char *path, long *whole) {
     struct stat st;
     *whole = 0;
     if (stat(path, &st) && errno == ENOENT)
@@ -177,7 +175,7 @@ static noc_status read_table(lab_session *lab, const char *path, long *whole) {
     return status;
 }
 
-static noc_status open_for_rows(lab_session *lab, const char *path, long whole) {
+noc_status lab_open_rows(lab_session *lab, const char *path, long whole) {
     char header[1024];
     print_header(header);
     lab->csv = fopen(path, whole ? "r+" : "w");
@@ -191,7 +189,7 @@ static noc_status open_for_rows(lab_session *lab, const char *path, long whole) 
 
 /* A name that no table has that was put aside before: results.old.csv, results.old-2.csv, ... The folder is locked.
  * NULL after reporting that memory was refused. */
-static char *old_name(const lab_session *lab) {
+char *lab_old_name(const lab_session *lab) {
     struct stat st;
     char *name = noc_format("%s/results.old.csv", lab->folder);
     for (int i = 2; name && !lstat(name, &st); i++) {
@@ -212,7 +210,7 @@ static noc_status put_aside(const lab_session *lab, const char *path, const char
 
 /* Another program's file of that name. */
 static noc_status keep_strange(const lab_session *lab, const char *path) {
-    char *old = old_name(lab);
+    char *old = lab_old_name(lab);
     if (!old)
         return NOC_ERR_MEMORY;
     noc_warn(lab->log, "%s is a table of another kind or version; it is kept as %s", path, strrchr(old, '/') + 1);
@@ -224,12 +222,12 @@ static noc_status keep_strange(const lab_session *lab, const char *path) {
 noc_status lab_open_table(lab_session *lab) {
     char *path = noc_format("%s/results.csv", lab->folder);
     long whole = 0;
-    noc_status status = path ? read_table(lab, path, &whole) : noc_no_memory(lab->log, "results.csv");
+    noc_status status = path ? lab_read_table(lab, path, &whole) : noc_no_memory(lab->log, "results.csv");
     if (!status && whole < 0) {
         status = keep_strange(lab, path);
         whole = 0;
     }
-    status = status ? status : open_for_rows(lab, path, whole);
+    status = status ? status : lab_open_rows(lab, path, whole);
     free(path);
     return status;
 }
@@ -308,12 +306,14 @@ static noc_status turn_to(lab_session *lab, const char *path) {
     return lab->csv ? NOC_OK : lab_io_error(lab->log, path);
 }
 
-noc_status lab_tidy_table(lab_session *lab) {
+noc_status lab_tidy_table(lab_session *lab, bool *left_out) {
     size_t others;
     noc_status status = drop_pictures(lab, &others);
-    if (status || (!others && !lab->rows_broken && !lab->rows_twice))
+    bool lost = others || lab->rows_broken || lab->rows_twice;
+    *left_out = others || lab->rows_broken;
+    if (status || (!lost && !lab->taken.len))
         return status;
-    char *path = noc_format("%s/results.csv", lab->folder), *old = path ? old_name(lab) : NULL;
+    char *path = noc_format("%s/results.csv", lab->folder), *old = path ? lab_old_name(lab) : NULL;
     output file;
     status = !path ? noc_no_memory(lab->log, "results.csv")
              : old ? lab_create_file(lab->folder, "results.csv", lab->log, &file)
@@ -324,7 +324,7 @@ noc_status lab_tidy_table(lab_session *lab) {
         tell_rows(lab, lab->rows_twice, "stood there twice", old);
         print_all(lab, file.file);
         /* what could not be written, finishing tells */
-        status = fflush(file.file) ? NOC_OK : put_aside(lab, path, old, true);
+        status = fflush(file.file) ? NOC_OK : lost ? put_aside(lab, path, old, true) : NOC_OK;
         status = output_close(&file, status, lab->log);
         status = status ? status : turn_to(lab, path);
     }

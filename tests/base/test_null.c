@@ -212,6 +212,8 @@ static noc_camera camera;
     P(0, noc_lab_spec_get_config(NULL, 0, &(noc_lab_config_info){ 0 }) == NOC_ERR_ARGUMENT)                            \
     P(0, noc_lab_create(NULL, NULL, &(noc_lab *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                      \
     P(0, noc_lab_create(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                   \
+    P(0, noc_lab_join(NULL, NULL, &(bool){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                             \
+    P(0, noc_lab_join(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
     P(noc_lab_destroy(NULL), true)                                                                                     \
     P(0, noc_lab_run(NULL) == NOC_ERR_ARGUMENT)                                                                        \
     P(0, noc_lab_write_report(NULL) == NOC_ERR_ARGUMENT)                                                               \

@@ -498,11 +498,62 @@ static void test_locale(void **state) {
     noc_log_destroy(log);
 }
 
+/* Parts of a spec in one folder, and who may be there with whom. */
+static void test_parts(void **state) {
+    (void)state;
+    noc_log *log = fresh_log();
+    noc_lab_spec *spec = parse(SPEC, log);
+    noc_lab *one, *two, *other;
+    noc_lab_params first = { .part = 1, .parts = 2 }, second = { .part = 2, .parts = 2 },
+                   none = { .part = 3, .parts = 2 };
+    noc_lab_state told;
+    char path[200], cache[200];
+    bool joined = true;
+    snprintf(path, sizeof(path), "%s/parts", folder);
+    snprintf(cache, sizeof(cache), "%s/cache", folder);
+    assert_int_equal(open_lab(spec, "parts", none, &other, log), NOC_ERR_ARGUMENT);
+    assert_non_null(strstr(last, "part 3 of 2 does not exist"));
+    assert_int_equal(open_lab(spec, "parts", (noc_lab_params){ .parts = 2 }, &other, log), NOC_ERR_ARGUMENT);
+    assert_int_equal(open_lab(spec, "parts", first, &one, log), NOC_OK);
+    assert_int_equal(open_lab(spec, "parts", second, &two, log), NOC_OK);
+    assert_int_equal(open_lab(spec, "parts", first, &other, log), NOC_ERR_IO);
+    assert_non_null(strstr(last, "another process is part 1 of 2 there"));
+    assert_int_equal(open_lab(spec, "parts", (noc_lab_params){ 0 }, &other, log), NOC_ERR_IO);
+    assert_non_null(strstr(last, "another experiment is writing there"));
+    errors = 0;
+    assert_int_equal(noc_lab_run(two), NOC_OK);
+    noc_lab_get_state(two, &told);
+    assert_int_equal(told.rows_made, 2 * FRAMES * 2);
+    assert_int_equal(noc_lab_write_report(two), NOC_ERR_ARGUMENT); /* of all runs */
+    noc_lab_destroy(two);
+    errors = 0;
+    second.folder = path, second.cache = cache;
+    assert_int_equal(noc_lab_join(spec, &second, &joined, log), NOC_OK); /* the first part lives */
+    assert_false(joined);
+    noc_lab_destroy(one);
+    assert_int_equal(noc_lab_join(spec, &second, &joined, log), NOC_OK); /* it has made nothing */
+    assert_false(joined);
+    assert_int_equal(open_lab(spec, "parts", first, &one, log), NOC_OK);
+    assert_int_equal(noc_lab_run(one), NOC_OK);
+    noc_lab_destroy(one);
+    assert_int_equal(noc_lab_join(spec, &second, &joined, log), NOC_OK);
+    assert_true(joined);
+    assert_int_equal(noc_lab_join(spec, &second, &joined, log), NOC_OK); /* it is done */
+    assert_true(joined);
+    assert_int_equal(open_lab(spec, "parts", (noc_lab_params){ 0 }, &other, log), NOC_OK);
+    assert_int_equal(noc_lab_run(other), NOC_OK);
+    noc_lab_get_state(other, &told);
+    assert_true(told.rows == 2 * 2 * FRAMES * 2 && !told.rows_made && !errors && !warnings);
+    noc_lab_destroy(other);
+    noc_lab_spec_destroy(spec);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_figures), cmocka_unit_test(test_measure_ends), cmocka_unit_test(test_spec),
         cmocka_unit_test(test_recipe),       cmocka_unit_test(test_going_on),     cmocka_unit_test(test_locale),
-        cmocka_unit_test(test_map),
+        cmocka_unit_test(test_map),          cmocka_unit_test(test_parts),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

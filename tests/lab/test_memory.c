@@ -23,7 +23,7 @@ static int make_folder(void **state) {
 
 static void clear(void) {
     char command[200];
-    snprintf(command, sizeof(command), "rm -rf '%s'/*", folder);
+    snprintf(command, sizeof(command), "rm -rf '%s'/* '%s'/.lock", folder, folder);
     assert_int_equal(system(command), 0);
 }
 
@@ -68,27 +68,50 @@ static noc_status work(const noc_lab_spec *spec, noc_log *log, size_t *rows) {
     return status;
 }
 
-static void test_run(void **state) {
-    (void)state;
+/* The same by two parts, one after the other. */
+static noc_status work_parts(const noc_lab_spec *spec, noc_log *log, size_t *rows) {
+    char cache[100];
+    noc_lab *lab;
+    noc_lab_state told;
+    noc_status status = NOC_OK;
+    bool joined = false;
+    snprintf(cache, sizeof(cache), "%s/cache", folder);
+    *rows = 0;
+    for (int part = 1; part <= 2 && !status; part++) {
+        noc_lab_params params = { folder, cache, part, 2, .device.threads = 1 };
+        status = noc_lab_create(spec, &params, &lab, log);
+        status = status ? status : noc_lab_run(lab);
+        noc_lab_get_state(lab, &told);
+        *rows += told.rows;
+        noc_lab_destroy(lab);
+        status = status ? status : noc_lab_join(spec, &params, &joined, log);
+        assert_true(!joined || !status);
+    }
+    assert_true(joined || status);
+    return status;
+}
+
+static void run_refused(noc_status (*run)(const noc_lab_spec *, noc_log *, size_t *)) {
     noc_log *log = counting_log();
     noc_lab_spec *spec;
     size_t whole, rows;
     bool reached;
     assert_int_equal(noc_lab_spec_parse(text, "a.json", &spec, log), NOC_OK);
-    assert_int_equal(work(spec, log, &whole), NOC_OK);
+    clear();
+    assert_int_equal(run(spec, log, &whole), NOC_OK);
     assert_int_equal(whole, 2 * 2 * 2);
     /* Allocations of a frame are refused by tests/render, so they are passed over in ever longer steps. */
     for (int later = 0; later < 2; later++)
         for (uint64_t n = (reached = true, 1); reached; n = n + 1 + (n > 30 ? n / 3 : 0)) {
             clear();
             begin_refusal(n, later);
-            noc_status status = work(spec, log, &rows);
+            noc_status status = run(spec, log, &rows);
             reached = end_refusal();
             if (status) {
                 if (status == NOC_ERR_FORMAT) /* a picture that is read has no other word for it */
                     assert_true(strstr(refusing.first_error, "EXR") || strstr(refusing.first_error, "no memory for"));
                 assert_refused(status == NOC_ERR_FORMAT ? NOC_ERR_MEMORY : status, "run");
-                assert_int_equal(work(spec, log, &rows), NOC_OK);
+                assert_int_equal(run(spec, log, &rows), NOC_OK);
             } else {
                 assert_int_equal(refusing.errors, 0);
             }
@@ -98,7 +121,18 @@ static void test_run(void **state) {
     noc_log_destroy(log);
 }
 
+static void test_run(void **state) {
+    (void)state;
+    run_refused(work);
+}
+
+static void test_parts(void **state) {
+    (void)state;
+    run_refused(work_parts);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_spec), cmocka_unit_test(test_run) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_spec), cmocka_unit_test(test_run),
+                                        cmocka_unit_test(test_parts) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
