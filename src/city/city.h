@@ -126,7 +126,7 @@ typedef struct city_paved {
 } city_paved;
 
 /* Sets the decks of roads that are bridges (local metres), over the ground that the scene has; in the arena. */
-noc_status city_level_decks(const noc_scene *scene, geo_road *roads, size_t count, noc_arena *arena);
+noc_status city_level_decks(noc_scene *scene, geo_road *roads, size_t count, noc_arena *arena);
 
 /* Makes surfaces of roads of maps (local metres), on the ground that the scene has: roads where cars drive, pavements
  * where one walks, each as wide as its carriageway and named by its id. Bridges follow their decks. Bounded in

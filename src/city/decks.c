@@ -258,12 +258,12 @@ static noc_status level(decks *d, noc_arena *arena) {
     return NOC_OK;
 }
 
-noc_status city_level_decks(const noc_scene *scene, geo_road *roads, size_t count, noc_arena *arena) {
+noc_status city_level_decks(noc_scene *scene, geo_road *roads, size_t count, noc_arena *arena) {
     decks d = { .scene = scene, .roads = roads, .count = count };
     noc_status status = level(&d, arena);
     geo_cells_free(&d.cells);
     array_free(&d.joints);
     array_free(&d.joint_of);
     array_free(&d.pieces);
-    return status ? noc_no_memory(scene->log, "bridges") : NOC_OK;
+    return status ? noc_scene_out_of_memory(scene) : NOC_OK;
 }
