@@ -409,15 +409,64 @@ static void test_named_overpass(void **state) {
     expect_lamps(ANSWER(ELEMENT("1", ",\"tags\":{\"highway\":\"street_lamp\"}") "," ELEMENT("2", "")), true, NOC_OK, 1);
 }
 
+/* Columns that are called as sources are, and hold ids or readings of sensors: no sources, and nothing to guess at.
+ * Codes that come again are told, and so is what is not understood beside what is. */
+static void test_ids(void **state) {
+    static const struct {
+        const char *table;
+        const char *column, *field; /* NULL: it is no table of lamps */
+        size_t unread;
+    } rows[] = {
+        { "id,lon,lat,Lamp1,wattage\nA,9.5,51.3,L-0012,70\nB,9.501,51.3,L-0013,70\nC,9.502,51.3,L-0014,50\n", "Lamp1",
+          "", 0 },
+        { "id,lon,lat,lamp\nA,9.5,51.3,1001\nB,9.501,51.3,1002\nC,9.502,51.3,1003\n", "lamp", "", 0 },
+        { "id,lon,lat,lamp_id\nA,9.5,51.3,L-1\nB,9.501,51.3,L-2\nC,9.502,51.3,L-3\n", "lamp_id", "id", 0 },
+        { "id,lon,lat,lamp,luminaire\nA,9.5,51.3,LED,x-17\nB,9.501,51.3,LED,x-18\nC,9.502,51.3,HPS,x-19\n", "luminaire",
+          "", 0 },
+        { "station,lon,lat,Lamp1,Lamp2\nA,9.5,51.3,.35,12\nB,9.501,51.3,.4,13\nC,9.502,51.3,.2,14\n", NULL, NULL, 0 },
+        { "id,lon,lat,lamp\nA,9.5,51.3,3\nB,9.501,51.3,3\nC,9.502,51.3,4\nD,9.503,51.3,4\n", "lamp", "", 4 },
+        { "id,lon,lat,lamp\nA,9.5,51.3,XQ-1\nB,9.501,51.3,XQ-2\nC,9.502,51.3,XQ-3\nD,9.503,51.3,LED\n", "lamp",
+          "source", 3 },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char path[] = "/tmp/noc-ids-XXXXXX";
+        int fd = mkstemp(path);
+        size_t n = strlen(rows[i].table), unread = 0;
+        assert_true(fd >= 0 && write(fd, rows[i].table, n) == (ssize_t)n && !close(fd));
+        noc_report *report = NULL;
+        const noc_import_params params = noc_import_default_params();
+        assert_int_equal(noc_inspect(NULL, path, &params, &report), NOC_OK);
+        const noc_report_file *file = noc_report_get_file(report, 0);
+        assert_int_equal(file->lamps > 0, rows[i].field != NULL);
+        for (size_t k = 0; k < file->line_count; k++)
+            unread += strstr(file->lines[k].reason, "not understood") ? file->lines[k].count : 0;
+        assert_int_equal(unread, rows[i].unread);
+        for (size_t k = 0; k < file->column_count && rows[i].field; k++)
+            if (!strcmp(file->columns[k].name, rows[i].column))
+                assert_string_equal(file->columns[k].field, rows[i].field);
+        noc_report_destroy(report);
+        unlink(path);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables),
-        cmocka_unit_test(test_named_csv),     cmocka_unit_test(test_windows_1252),
-        cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),
-        cmocka_unit_test(test_bad_maps),      cmocka_unit_test(test_mapped_units),
-        cmocka_unit_test(test_refs),          cmocka_unit_test(test_thousands),
-        cmocka_unit_test(test_bare_type),     cmocka_unit_test(test_kinds_in_values),
-        cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
+        cmocka_unit_test(test_ids),
+        cmocka_unit_test(test_units_of_keys),
+        cmocka_unit_test(test_units_in_tables),
+        cmocka_unit_test(test_named_csv),
+        cmocka_unit_test(test_windows_1252),
+        cmocka_unit_test(test_looked_at),
+        cmocka_unit_test(test_mapped),
+        cmocka_unit_test(test_bad_maps),
+        cmocka_unit_test(test_mapped_units),
+        cmocka_unit_test(test_refs),
+        cmocka_unit_test(test_thousands),
+        cmocka_unit_test(test_bare_type),
+        cmocka_unit_test(test_kinds_in_values),
+        cmocka_unit_test(test_named_maps),
+        cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
 }

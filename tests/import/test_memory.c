@@ -454,11 +454,11 @@ static void values_that_are_not_understood(void **state) {
         lamp_unread *u = lamp_unread_create();
         assert_non_null(u);
         begin_refusal(n, false);
-        bool counted = lamp_unread_add(u, "source", "glow-worm", "a");
+        bool counted = lamp_unread_add(u, "source", "", "glow-worm", "a");
         reached = end_refusal();
         assert_true(counted != reached);
-        assert_true(lamp_unread_add(u, "source", "glow-worm", "b"));
-        assert_true(lamp_unread_add(u, "source", "will-o'-the-wisp", "c"));
+        assert_true(lamp_unread_add(u, "source", "", "glow-worm", "b"));
+        assert_true(lamp_unread_add(u, "source", "", "will-o'-the-wisp", "c"));
         geo_issues *issues = geo_issues_create();
         lamp_unread_tell(u, issues);
         geo_issues_destroy(issues);

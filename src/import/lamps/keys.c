@@ -91,10 +91,21 @@ static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const ch
     return LAMP_FIELD_NONE;
 }
 
+/* Returns true for "lamp1", "leuchte2": sensors have columns of such names, whose values are no sources. */
+static bool is_numbered_thing(const char *folded) {
+    static const char *const things[] = { "lamp",    "light",     "lampe",    "lampara", "lampada",  "luminaire",
+                                          "leuchte", "luminaria", "svitidlo", "oprawa",  "armatuur", "valaisin" };
+    size_t n = strlen(folded), word = strcspn(folded, "0123456789");
+    for (size_t i = 0; i < NOC_COUNT(things) && word < n; i++)
+        if (strlen(things[i]) == word && !strncmp(folded, things[i], word))
+            return true;
+    return false;
+}
+
 static lamp_field find_column(const char *folded, lamp_meaning *m) {
     const lamp_column *c = lamp_column_find(folded);
     m->rank = c ? c->rank : 0;
-    m->strength = c ? c->strength : 0;
+    m->strength = !c ? 0 : is_numbered_thing(folded) ? NOC_MIN(c->strength, 1) : c->strength;
     return c ? c->field : LAMP_FIELD_NONE;
 }
 
@@ -201,6 +212,7 @@ typedef struct key {
     const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
     bool tells;          /* what is a lamp */
     bool placed;         /* places were read from it */
+    bool understood;     /* sources were */
     bool described;      /* descriptions were, though it is called otherwise */
     bool asked;          /* by conditions: */
     uint64_t conditions[GEO_CONDITIONS / 64];
@@ -256,15 +268,6 @@ void lamp_keys_destroy(lamp_keys *keys) {
 bool lamp_keys_count_unread(lamp_keys *keys) {
     keys->unread = lamp_unread_create();
     return keys->unread != NULL;
-}
-
-void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const char *id, geo_issues *issues) {
-    if (!issues)
-        return;
-    if (!keys || !keys->unread)
-        geo_issue(issues, GEO_GUESSED, reason, id);
-    else if (!lamp_unread_add(keys->unread, reason, text, id))
-        keys->arena.refused = true;
 }
 
 lamp_model lamp_keys_model(lamp_keys *keys, const char *text, bool watts_column) {
@@ -372,6 +375,17 @@ static key *get_tag(lamp_keys *keys, const lamp_tag *tag) {
     return tag->known ? &keys->keys.data[tag->known - 1] : get(keys, tag->key);
 }
 
+void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const lamp_tag *column, const char *id,
+                      geo_issues *issues) {
+    if (!issues)
+        return;
+    const key *k = keys && column ? get_tag(keys, column) : NULL;
+    if (!keys || !keys->unread)
+        geo_issue(issues, GEO_GUESSED, reason, id);
+    else if (!lamp_unread_add(keys->unread, reason, k ? k->name : "", text, id))
+        keys->arena.refused = true;
+}
+
 lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag) {
     return keys && tag->known ? get_tag(keys, tag)->meaning : lamp_keys_meaning(keys, tag->key);
 }
@@ -458,6 +472,12 @@ void lamp_keys_described(lamp_keys *keys, const lamp_tag *tag) {
         k->described = true;
 }
 
+void lamp_keys_understood(lamp_keys *keys, const lamp_tag *tag) {
+    key *k = keys ? get_tag(keys, tag) : NULL;
+    if (k)
+        k->understood = true;
+}
+
 bool lamp_keys_number(const lamp_keys *keys, size_t number) {
     char name[24];
     noc_snprintf(name, sizeof(name), "#%zu", number);
@@ -475,6 +495,8 @@ static const char *field_read(const key *k) {
         return "kind";
     if (!m->field && (m->role >= LAMP_ROLE_WHY_NOT || m->asks == LAMP_ASKS))
         return "status";
+    if (m->field == LAMP_FIELD_TYPE && k->values && !k->understood && m->rank >= 0)
+        return ""; /* ids, or readings of a sensor */
     return k->described ? "description" : place && !k->placed ? "" : field_name(m->field);
 }
 
@@ -489,6 +511,9 @@ static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place
 
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) {
     warn_of_units(keys, sink->log, place);
+    for (size_t i = 0; keys->unread && i < keys->keys.len; i++)
+        if (!keys->keys.data[i].understood && *keys->keys.data[i].name)
+            lamp_unread_drop_ids(keys->unread, keys->keys.data[i].name);
     if (keys->unread && sink->issues)
         lamp_unread_tell(keys->unread, sink->issues);
     if (!sink->columns)

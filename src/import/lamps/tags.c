@@ -7,6 +7,7 @@
 
 typedef struct said {
     lamp_meaning meaning;
+    const lamp_tag *tag;
     const char *value;
 } said;
 
@@ -26,11 +27,13 @@ static bool misread(const reading *r, const char *reason) {
     return false;
 }
 
-/* The same of a text, whose values are counted. */
-static bool unread(const reading *r, const char *reason, const char *text) {
-    lamp_keys_unread(r->keys, reason, text, r->lamp->id, r->issues);
+/* The same of a text, whose values are counted. column: which may turn out to have ids; NULL: any. */
+static bool unread_in(const reading *r, const char *reason, const char *text, const lamp_tag *column) {
+    lamp_keys_unread(r->keys, reason, text, column, r->lamp->id, r->issues);
     return false;
 }
+
+static bool unread(const reading *r, const char *reason, const char *text) { return unread_in(r, reason, text, NULL); }
 
 /* A quantity in its plausible range; 0 stands for "not known" in many tables. True if *out was set. */
 static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason,
@@ -173,7 +176,7 @@ static bool says_something(const char *text, const lamp_model *m) {
 
 /* Descriptions: in columns of lamps first, by rank, then wherever one stands alone. */
 static void read_models(reading *r, const said *all, size_t count, int ranks, const lamp_tag *tags, size_t tag_count) {
-    const char *strange = NULL;
+    const said *strange = NULL;
     for (int rank = -1; rank < ranks; rank++)
         for (size_t i = 0; i < count; i++) {
             const lamp_meaning *m = &all[i].meaning;
@@ -182,8 +185,12 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
                 continue;
             const lamp_model model = lamp_keys_model(r->keys, all[i].value, watts && rank < 2);
             take_model(r, &model);
-            if (!watts && rank < 4 && !strange && !says_something(all[i].value, &model))
-                strange = all[i].value;
+            if (watts)
+                continue;
+            if (says_something(all[i].value, &model))
+                lamp_keys_understood(r->keys, all[i].tag);
+            else if (rank < 4 && !strange)
+                strange = &all[i];
         }
     for (size_t i = 0; i < tag_count && lacks(r->lamp); i++) {
         const char *text = tags[i].value;
@@ -196,7 +203,7 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
         lamp_keys_described(r->keys, &tags[i]);
     }
     if (strange && r->lamp->source == GEO_SOURCE_UNKNOWN)
-        unread(r, "source of a lamp not understood", strange);
+        unread_in(r, "source of a lamp not understood", strange->value, strange->tag);
 }
 
 /* A column of yes and no that says neither, nor anything of a lamp, is told of: there is taken to be one. */
@@ -276,7 +283,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
         lamp_meaning m = lamp_tag_meaning(keys, &tags[i]);
         if (m.field == LAMP_FIELD_NONE || lamp_blank(tags[i].value))
             continue;
-        all[n++] = (said){ m, tags[i].value };
+        all[n++] = (said){ m, &tags[i], tags[i].value };
         ranks = NOC_MAX(ranks, m.rank + 1);
     }
     bool known[LAMP_FIELD_TOTAL] = { false };

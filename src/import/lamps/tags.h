@@ -120,7 +120,8 @@ void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp
 /* Counts values that are not understood one by one, until lamp_keys_report tells of them; false: memory was refused. */
 bool lamp_keys_count_unread(lamp_keys *keys) NOC_MUST_USE;
 /* A value that is not understood; keys may be NULL, and issues. */
-void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const char *id, geo_issues *issues);
+void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const lamp_tag *column, const char *id,
+                      geo_issues *issues);
 /* lamp_model_of, remembered. keys may be NULL. */
 lamp_model lamp_keys_model(lamp_keys *keys, const char *text, bool watts_column);
 /* Notes a tag's value for the table of columns; blank ones count as none. */
@@ -131,6 +132,8 @@ void lamp_keys_tell(lamp_keys *keys, const char *name);
 void lamp_keys_placed(lamp_keys *keys, const char *name);
 /* A description was read from a column that is called otherwise; keys may be NULL. */
 void lamp_keys_described(lamp_keys *keys, const lamp_tag *tag);
+/* A value of a column of sources was understood: where none is, it is not one. keys may be NULL. */
+void lamp_keys_understood(lamp_keys *keys, const lamp_tag *tag);
 /* Does the user name a column by that number, from 1 on ("#2")? */
 bool lamp_keys_number(const lamp_keys *keys, size_t number);
 /* Hands the columns noted so far, in the order met, to the sink. */
@@ -204,8 +207,11 @@ void lamp_kinds_free(lamp_kinds *kinds);
 typedef struct lamp_unread lamp_unread;
 lamp_unread *lamp_unread_create(void); /* NULL: memory was refused */
 void lamp_unread_destroy(lamp_unread *u);
-/* reason must stay. id: of the lamp that has it. false: memory was refused */
-bool lamp_unread_add(lamp_unread *u, const char *reason, const char *text, const char *id) NOC_MUST_USE;
+/* reason and column ("": any) must stay. id: of the lamp that has it. false: memory was refused */
+bool lamp_unread_add(lamp_unread *u, const char *reason, const char *column, const char *text,
+                     const char *id) NOC_MUST_USE;
+/* Drops the values of a column in which nothing is understood if they are ids: nearly each occurs once. */
+void lamp_unread_drop_ids(lamp_unread *u, const char *column);
 /* Of each reason the five most frequent values, a line each, and the others in one. */
 void lamp_unread_tell(lamp_unread *u, geo_issues *issues);
 

@@ -1,10 +1,10 @@
 /* Values that were not understood, counted one by one: the five most frequent are told. */
 #include "import/lamps/tags.h"
 
-enum { TOLD = 5, MOST_VALUES = 4096, VALUE_SIZE = 48 };
+enum { TOLD = 5, MOST_VALUES = 4096, VALUE_SIZE = 48, FEWEST_IDS = 3 };
 
 typedef struct value {
-    const char *reason, *text, *id; /* id: of the first lamp that has it */
+    const char *reason, *column, *text, *id; /* id: of the first lamp that has it */
     size_t count;
     bool told;
 } value;
@@ -36,13 +36,14 @@ static void shorten(const char *text, char out[VALUE_SIZE]) {
     strcpy(out + n, text[n] ? "..." : "");
 }
 
-bool lamp_unread_add(lamp_unread *u, const char *reason, const char *text, const char *id) {
-    char shown[VALUE_SIZE], key[VALUE_SIZE + 100];
+bool lamp_unread_add(lamp_unread *u, const char *reason, const char *column, const char *text, const char *id) {
+    char shown[VALUE_SIZE], key[VALUE_SIZE + 200];
     shorten(text, shown);
-    noc_snprintf(key, sizeof(key), "%s\n%s", reason, u->values.len < MOST_VALUES ? shown : "");
+    noc_snprintf(key, sizeof(key), "%s\n%.100s\n%s", reason, column, u->values.len < MOST_VALUES ? shown : "");
     uint64_t at;
     if (!map_get(&u->index, key, &at)) {
         const value v = { .reason = reason,
+                          .column = column,
                           .text = arena_strdup(&u->arena, u->values.len < MOST_VALUES ? shown : "..."),
                           .id = arena_strdup(&u->arena, id) };
         at = u->values.len;
@@ -52,6 +53,17 @@ bool lamp_unread_add(lamp_unread *u, const char *reason, const char *text, const
     }
     u->values.data[at].count++;
     return true;
+}
+
+void lamp_unread_drop_ids(lamp_unread *u, const char *column) {
+    size_t values = 0, once = 0;
+    for (size_t i = 0; i < u->values.len; i++) {
+        values += !strcmp(u->values.data[i].column, column);
+        once += !strcmp(u->values.data[i].column, column) && u->values.data[i].count == 1;
+    }
+    bool ids = values >= FEWEST_IDS && 10 * once >= 9 * values;
+    for (size_t i = 0; i < u->values.len && ids; i++)
+        u->values.data[i].told = u->values.data[i].told || !strcmp(u->values.data[i].column, column);
 }
 
 /* The most frequent one of a reason that is not told; of as many the first. NULL: all are. */
