@@ -413,6 +413,7 @@ typedef struct noc_scene_info {
     size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;
     size_t triangles_by_class[NOC_CLASS_COUNT];
+    size_t transparent_triangles; /* whose material has a transmittance or is a cutout */
     size_t triangles_dropped;
     double bounds_min[3], bounds_max[3]; /* local; of all that is rendered but the empty country around a city */
     double origin[3];

@@ -205,6 +205,7 @@ void info_json_file(const char *path, const char *error, const noc_report_file *
         triple("extent_max", scene->bounds_max);
         number("triangles", (double)scene->triangles);
         classes("triangles_by_class", scene->triangles_by_class);
+        number("transparent_triangles", (double)scene->transparent_triangles);
         number("lights", (double)scene->lights);
     }
     putchar('}');
@@ -252,6 +253,7 @@ noc_status info_json_city(const info_city *city, const info_args *args) {
     number("buildings", (double)t->buildings);
     number("triangles", (double)info->triangles);
     classes("triangles_by_class", info->triangles_by_class);
+    number("transparent_triangles", (double)info->transparent_triangles);
     number("instances", (double)info->instances);
     number("instance_triangles", (double)info->instance_triangles);
     windows(&t->windows);

@@ -77,6 +77,9 @@ void info_print_city(const info_city *city, const info_args *args) {
                noc_text_count(b, t->buildings));
     printf("  %-11s %s\n", "triangles", noc_text_count(a, info->triangles));
     info_print_counts(info->triangles_by_class);
+    if (info->transparent_triangles)
+        printf("  %-11s %s through which light goes\n", "transparent",
+               noc_text_many(b, info->transparent_triangles, "triangle"));
     if (info->instances)
         printf("  %-11s %s that show %s\n", "instances", noc_text_count(a, info->instances),
                noc_text_many(b, info->instance_triangles, "triangle"));

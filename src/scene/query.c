@@ -30,7 +30,10 @@ static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
         if (m->model)
             info->instance_triangles += (size_t)m->triangle_count * scene->models.data[m->model - 1].instances;
         info->vertices += noc_mesh_end_vertex(scene, i) - m->first_vertex;
-        info->triangles_by_class[scene->materials.data[m->material].cls] += m->triangle_count;
+        const noc_material *material = &scene->materials.data[m->material];
+        info->triangles_by_class[material->cls] += m->triangle_count;
+        if (noc_material_lets_through(material))
+            info->transparent_triangles += m->triangle_count;
     }
 }
 

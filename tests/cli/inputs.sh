@@ -523,4 +523,11 @@ PY
         test "$warned" = "$(echo $order | grep -c lon)"
     result $? "degrees of $order beside a lamp" "$(cat err)"
 done
+
+lamp_model
+sed -i '/^newmtl floor/a d .4' lamp.mtl
+run info --scene lamp.obj
+grep -q '^  transparent  *2 triangles through which light goes$' out && run info --scene --json lamp.obj &&
+    grep -q '"transparent_triangles": 2' out
+result $? "what lets light through is told"
 finish
