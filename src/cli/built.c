@@ -52,14 +52,20 @@ static bool as_built(const noc_recipe *built, const noc_option *o, const noc_imp
     return same;
 }
 
+/* What has the same effect on a city that is built, where anything has. */
+static const char *instead(const noc_option *o) {
+    return strcmp(o->name, "maintenance") ? "" : ", or dim its lamps, as --group lamps=0.8 does";
+}
+
 static int check_options(const cli_command *command, const cli_args *args, const noc_import_params *import,
                          const noc_recipe *built) {
     for (size_t i = 0; i < args->said_anew; i++) {
         const noc_option *o = args->given[i];
         bool may = !of_import(o) || of_windows(o) || of_groups(o) || of_cars(o) || of_rain(o, import);
         if (!may && !as_built(built, o, import))
-            return cli_usage(command, "%s: %.200s is built already, and that has decided it: build it again with this",
-                             o->name, args->inputs[0]);
+            return cli_usage(command,
+                             "%s: %.200s is built already, and that has decided it: build it again with this%s",
+                             o->name, args->inputs[0], instead(o));
     }
     return CLI_OK;
 }

@@ -139,7 +139,8 @@ run build builtin:city -o kept.noct -q --maintenance 0.8 && run influence kept.n
     --time .1 && grep -q '"maintenance": 0.8' out && run info kept.noct --scene --json &&
     grep -q '"maintenance": 0.8' out
 result $? "a built city keeps it"
-expect "which is decided there" 2 'built already' influence kept.noct --region pixel:64,64 --maintenance 0.9
+expect "which is decided there" 2 "built already.*--group lamps=0.8" \
+    influence kept.noct --region pixel:64,64 --maintenance 0.9
 
 run influence map.osm --map-surfaces -q --lamp node/12 --top 2
 grep -q '^node/12: lamp$' out && grep -q '^flux  *9,000 lm of 1 light' out &&
