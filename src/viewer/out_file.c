@@ -2,19 +2,22 @@
 #include "viewer/option.h"
 #include "viewer/out.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The whole file; NULL where it cannot be read. */
-static unsigned char *read_whole(const char *path, size_t *size) {
+/* The whole file; NULL where it cannot be read, and `why` then has the cause. */
+static unsigned char *read_whole(const char *path, size_t *size, char *why, size_t why_size) {
     struct stat st;
     FILE *f = fopen(path, "rb");
     unsigned char *data = f && !fstat(fileno(f), &st) ? malloc((size_t)st.st_size + 1) : NULL;
     *size = data ? fread(data, 1, (size_t)st.st_size, f) : 0;
     bool whole = data && *size == (size_t)st.st_size;
+    if (!whole)
+        snprintf(why, why_size, "%s cannot be read: %s", path, strerror(errno));
     if (f)
         fclose(f);
     if (whole)
@@ -69,14 +72,16 @@ bool out_picture(const out_view *v, noc_view *of, bool exr, unsigned char **data
     viewer_ear ear = { why, why_size };
     *data = NULL;
     *size = 0;
-    snprintf(why, why_size, "the picture cannot be written");
     snprintf(folder, sizeof(folder), "%.200s/nocturne-XXXXXX", base && *base ? base : "/tmp");
-    if (!mkdtemp(folder))
+    snprintf(why, why_size, "the picture cannot be written to %s", folder);
+    if (!mkdtemp(folder)) {
+        snprintf(why, why_size, "a folder for the picture cannot be made as %s: %s", folder, strerror(errno));
         return false;
+    }
     snprintf(path, sizeof(path), "%s/night.%s", folder, exr ? "exr" : "png");
     noc_log *log = viewer_listen(&ear);
     if (write_file(v, of, path, log))
-        *data = read_whole(path, size);
+        *data = read_whole(path, size, why, why_size);
     noc_log_destroy(log);
     unlink(path);
     rmdir(folder);

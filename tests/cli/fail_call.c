@@ -72,7 +72,7 @@ static bool is_regular(const char *path) {
     return !stat(path, &st) && S_ISREG(st.st_mode);
 }
 
-/* Is a file of that path, which is not there, in the folder? */
+/* Is a file of that path, which is not there, in the folder or in one below it? */
 static bool would_be_in(const char *path, const char *folder) {
     char parent[PATH_MAX], whole[PATH_MAX];
     snprintf(parent, sizeof(parent), "%s", path);
@@ -80,7 +80,8 @@ static bool would_be_in(const char *path, const char *folder) {
     if (!slash || access(path, F_OK) == 0)
         return false;
     *slash = 0;
-    return realpath(parent, whole) && !strcmp(whole, folder);
+    size_t length = strlen(folder);
+    return realpath(parent, whole) && !strncmp(whole, folder, length) && (!whole[length] || whole[length] == '/');
 }
 
 /* Returns true if the path is one of another folder's descriptor. */
