@@ -232,7 +232,7 @@ typedef struct noc_device_info {
 NOC_API size_t noc_devices(noc_device_info *devices, size_t capacity);
 
 typedef struct noc_device_params {
-    int threads; /* of the processor; 0: one a core */
+    int threads; /* of the processor; 0: one a core that the process may run on */
     noc_backend_id backend;
     /* vulkan: its number, its name, or a part that no other usable device has in its name, case ignored; NULL: discrete
      * GPUs first, software last */

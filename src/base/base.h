@@ -122,6 +122,8 @@ bool noc_parse_int(const char *s, long long *out);
 bool noc_ieq(const char *a, const char *b); /* ASCII case-insensitive equality; NULL equals nothing */
 
 void noc_processor_name(char *text, size_t size); /* "AMD EPYC 7763 64-Core Processor" */
+/* Returns the number of cores that the calling thread may run on: those that taskset, mpirun or Slurm leave it. */
+int noc_processors(void);
 double noc_wall_seconds(void);
 double noc_cpu_seconds(void); /* of the process, all threads */
 
@@ -130,7 +132,7 @@ double noc_cpu_seconds(void); /* of the process, all threads */
  * items: they share the pool's threads, whose numbers stay the same, so scratch a run and worker is enough. An item may
  * not start a run. */
 typedef struct noc_pool noc_pool;
-/* 0: one a core. Fewer where the system starts no more. NULL when memory is refused. */
+/* 0: noc_processors(). Fewer where the system starts no more. NULL when memory is refused. */
 noc_pool *noc_pool_create(int threads) NOC_MUST_USE;
 void noc_pool_destroy(noc_pool *pool);
 int noc_pool_threads(const noc_pool *pool);

@@ -2,7 +2,6 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 struct worker {
     noc_pool *pool;
@@ -95,7 +94,7 @@ static bool start_thread(struct worker *w) {
 
 noc_pool *noc_pool_create(int threads) {
     if (threads <= 0)
-        threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+        threads = noc_processors();
     threads = NOC_CLAMP(threads, 1, 1024);
     noc_pool *pool = noc_calloc(1, sizeof(*pool));
     struct worker *workers = pool ? noc_calloc((size_t)threads, sizeof(*workers)) : NULL;

@@ -1,7 +1,9 @@
-/* The processor's name. */
+/* The processor's name, and how much of it is ours. */
 #include "base/base.h"
 
+#include <sched.h>
 #include <stdio.h>
+#include <unistd.h>
 
 void noc_processor_name(char *text, size_t size) {
     char line[256];
@@ -17,4 +19,10 @@ void noc_processor_name(char *text, size_t size) {
     }
     if (file)
         fclose(file);
+}
+
+int noc_processors(void) {
+    cpu_set_t sets[16]; /* of 1,024 each: the kernel refuses a set that is too small */
+    int count = sched_getaffinity(0, sizeof(sets), sets) ? 0 : CPU_COUNT_S(sizeof(sets), sets);
+    return count > 0 ? count : (int)NOC_MAX(sysconf(_SC_NPROCESSORS_ONLN), 1);
 }

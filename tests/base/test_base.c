@@ -1,5 +1,6 @@
 #include "../test.h"
 #include "base/base.h"
+#include <sched.h>
 #include <stdatomic.h>
 
 /* Bit for bit what strtod says, whichever way the number goes. */
@@ -321,6 +322,26 @@ static void log_without_a_callback_prints_nothing(void **state) {
     noc_log_destroy(log);
 }
 
+/* A process that is bound to one core takes one thread, whatever the machine has. */
+static void threads_are_of_the_cores_that_are_ours(void **state) {
+    (void)state;
+    cpu_set_t all, one;
+    int first = 0;
+    assert_int_equal(sched_getaffinity(0, sizeof(all), &all), 0);
+    assert_int_equal(noc_processors(), CPU_COUNT(&all));
+    while (!CPU_ISSET(first, &all))
+        first++;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof(one), &one), 0);
+    noc_pool *pool = noc_pool_create(0);
+    int processors = noc_processors(), threads = noc_pool_threads(pool);
+    noc_pool_destroy(pool);
+    assert_int_equal(sched_setaffinity(0, sizeof(all), &all), 0);
+    assert_int_equal(processors, 1);
+    assert_int_equal(threads, 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_of_all_lengths),
@@ -333,6 +354,7 @@ int main(void) {
         cmocka_unit_test(large_memory_takes_another_size),
         cmocka_unit_test(refused_memory_is_told),
         cmocka_unit_test(refused_threads_are_done_without),
+        cmocka_unit_test(threads_are_of_the_cores_that_are_ours),
         cmocka_unit_test(log_reports_once),
         cmocka_unit_test(log_without_a_callback_prints_nothing),
     };

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <sys/stat.h>
 #include <nocturne/option.h>
-#include <unistd.h>
 
 #define MOST_THREADS 1024
 
@@ -249,7 +248,7 @@ static int stage(const importer *im, const input *in) {
 }
 
 size_t import_threads(const noc_import_params *params, size_t items) {
-    long cores = !params ? 1 : params->threads ? params->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int cores = !params ? 1 : params->threads ? params->threads : noc_processors();
     return NOC_MIN(items, (size_t)NOC_CLAMP(cores, 1, MOST_THREADS));
 }
 
