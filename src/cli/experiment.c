@@ -151,7 +151,9 @@ static int run_spec(const experiment_args *args, const noc_lab_spec *spec, noc_l
                               .progress = progress,
                               .note = args->common.quiet ? NULL : note };
     noc_lab *lab;
-    int status = noc_lab_create(spec, &params, &lab, log) ? CLI_FAILURE : work(args, lab);
+    noc_status created = noc_lab_create(spec, &params, &lab, log);
+    bool ended = created == NOC_ERR_CANCELLED && cli_interrupted(); /* while it waited for another part */
+    int status = ended ? CLI_INTERRUPTED + cli_interrupted() : created ? CLI_FAILURE : work(args, lab);
     noc_lab_destroy(lab);
     if (!status && args->part.count > 1)
         status = join(args, spec, &params, log);

@@ -48,6 +48,16 @@ for way in "--segment 4 --smooth" "--segment 2 --method restir --no-spatial"; do
     sums shared | cmp -s - one.sums && test "$(wc -l <one.sums)" = 9
     result $? "and where pictures learn from each other: $way"
 done
+for part in 2 1; do
+    # shellcheck disable=SC2046
+    run $(pictures shared) --part $part/2
+    test "$status" = 1 && grep -q 'is there, and is of other options.*--overwrite replaces it' err
+    result $? "what is in the way of part $part is an error"
+    # shellcheck disable=SC2046
+    run $(pictures shared) --part $part/2 --overwrite
+    made err >made
+done
+sums shared | cmp -s - whole.sums && test "$(wc -l <made)" = 5; result $? "and replaced on request"
 test -z "$(meta shared/01.png part)"; result $? "a picture does not tell its part"
 
 # what started the process

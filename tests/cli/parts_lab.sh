@@ -133,6 +133,14 @@ sed -i "s/320 rows in part [13] of 3, 0 of/320 rows in part 1 of 3, 320 of/" tol
 same "and all are those of one process" shared told
 test "$(cat before after | grep -c 'reference made in')" = 2 && test -z "$(find cache.two -name '*.lock')"
 result $? "a reference that several need is made once" "$(grep reference before after)"
+if command -v parallel >where; then
+    rm -rf shared
+    parallel --will-cite -j2 "$program" experiment slow.json -o shared --cache cache.two --part '{}/4' ::: 1 2 3 4 \
+        >told 2>&1 </dev/null
+    same "GNU parallel" shared told
+else
+    skip "GNU parallel" "parallel is not here"
+fi
 if command -v mpirun >where; then
     rm -rf shared
     mpirun --oversubscribe -n 3 "$program" experiment slow.json -o shared --cache cache.two >told 2>&1 </dev/null
