@@ -1,6 +1,7 @@
 /* The CRSs of maps are looked at before GDAL reads them: grids and files of definitions that a text names are opened at
  * once. */
 #include "import/map/crs.h"
+#include "import/map/columns.h"
 
 #if NOC_HAVE_GDAL
 
@@ -39,7 +40,14 @@ typedef struct json_scan {
     crs_text now, of_file, own[2]; /* own: of features, the first that differ */
     size_t now_feature, feature;
     bool in_list; /* of features */
-    int hex;      /* digits of \u still to come */
+    /* Members of objects called "properties" or "attributes", and of ArcGIS JSON the objects in "fields". */
+    map_columns columns;
+    const char *format;
+    size_t columns_depth, fields_depth; /* of what is in them; 0: in none */
+    bool columns_next, fields_next;     /* such a key was read */
+    size_t fields;
+    uint64_t hash; /* of the string so far */
+    int hex;       /* digits of \u still to come */
     unsigned code;
     size_t length; /* of the string so far, though only its begin is kept */
     char text[LONGEST];
@@ -105,6 +113,35 @@ static void keep(json_scan *s, char c) {
     if (s->length < (s->crs_depth ? LONGEST : 16) - 1)
         s->text[s->length] = c;
     s->length++;
+    s->hash = map_column_hash(s->hash, c);
+}
+
+/* ---- columns ---- */
+
+static noc_status key_ended(json_scan *s) {
+    bool column = s->columns_depth && s->depth == s->columns_depth;
+    s->columns_next =
+        !s->columns_depth && !s->crs_depth && (!strcmp(s->text, "properties") || !strcmp(s->text, "attributes"));
+    s->fields_next = s->depth == 1 && !strcmp(s->text, "fields");
+    return column && !map_columns_add(&s->columns, s->hash) ? map_columns_refuse(s->name, s->format, s->log) : NOC_OK;
+}
+
+/* A field's definition counts by its number, its name is one of the members' as well. */
+static noc_status object_begins(json_scan *s, char c) {
+    if (s->columns_next && c == '{')
+        s->columns_depth = s->depth;
+    if (s->fields_next && c == '[')
+        s->fields_depth = s->depth;
+    s->columns_next = s->fields_next = false;
+    if (!s->fields_depth || c != '{' || s->depth != s->fields_depth + 1)
+        return NOC_OK;
+    s->fields++;
+    return s->fields > MAP_MOST_COLUMNS ? map_columns_refuse(s->name, s->format, s->log) : NOC_OK;
+}
+
+static void object_ended(json_scan *s) {
+    s->columns_depth = s->depth < s->columns_depth ? 0 : s->columns_depth;
+    s->fields_depth = s->depth < s->fields_depth ? 0 : s->fields_depth;
 }
 
 static noc_status string_ended(json_scan *s) {
@@ -146,10 +183,12 @@ static noc_status in_string(json_scan *s, char c) {
 }
 
 static noc_status between_strings(json_scan *s, char c) {
+    noc_status status = NOC_OK;
     switch (c) {
     case '"':
         s->in_string = true;
         s->length = 0;
+        s->hash = MAP_COLUMN_SEED;
         break;
     case ':':
         if (!s->crs_depth && is_crs_key(s->text)) {
@@ -157,12 +196,14 @@ static noc_status between_strings(json_scan *s, char c) {
             s->now_feature = s->feature;
         }
         s->cut_key = !s->crs_depth && is_cut_key(s->text);
+        status = key_ended(s);
         break;
     case 't': s->cut = s->cut || s->cut_key; break;
     case '{':
     case '[':
         s->depth++;
         count_feature(s, c);
+        status = object_begins(s, c);
         if (s->crs_depth && s->depth > s->crs_depth + 2)
             return noc_error(s->log, NOC_ERR_FORMAT,
                              "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
@@ -172,6 +213,7 @@ static noc_status between_strings(json_scan *s, char c) {
         s->depth -= s->depth > 0;
         if (s->depth < s->crs_depth)
             crs_ended(s);
+        object_ended(s);
         break;
     case ',':
         if (s->crs_depth && s->depth == s->crs_depth)
@@ -184,7 +226,7 @@ static noc_status between_strings(json_scan *s, char c) {
     }
     if (c != '"' && !isspace((unsigned char)c) && c != ':')
         s->text[0] = 0; /* no key */
-    return NOC_OK;
+    return status;
 }
 
 static noc_status check_character(json_scan *s, char c) {
@@ -204,6 +246,7 @@ static noc_status check_json(map_source *m, noc_stream *stream, bool *named, boo
     if (s) {
         s->name = noc_stream_name(stream);
         s->log = log;
+        s->format = m->format;
     }
     while (!status && got) {
         status = noc_stream_read(stream, buffer, CHUNK, &got);

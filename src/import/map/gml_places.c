@@ -2,6 +2,7 @@
  * leaves out the CRS of a layer that has several, and takes what is no number for 0. So the text is looked at first,
  * and says it in elements beside the geometry, which GDAL reads as fields of the feature. */
 #include "import/map/source.h"
+#include "import/map/columns.h"
 
 #if NOC_HAVE_GDAL
 
@@ -37,6 +38,7 @@ typedef struct scan {
     geometry now;
     noc_arena texts;
     size_t depth; /* of `open` with the geometry that is being read; 0: none */
+    map_columns *columns;
 } scan;
 
 static bool is_name(const char *name, size_t length, const char *const *names, size_t count) {
@@ -237,6 +239,18 @@ static noc_status end_element(scan *s, const char *behind) {
     return NOC_OK;
 }
 
+/* Elements in features, outside of geometries, are columns by their name and that of what they lie in. */
+static noc_status count_column(scan *s) {
+    uint64_t hash = MAP_COLUMN_SEED;
+    for (size_t i = s->open.len - 2; i < s->open.len; i++) {
+        const element *e = &s->open.data[i];
+        for (size_t k = 0; k < e->name_length; k++)
+            hash = map_column_hash(hash, e->name[k]);
+        hash = map_column_hash(hash, '|');
+    }
+    return map_columns_add(s->columns, hash) ? NOC_OK : map_columns_refuse(s->m->name, s->m->format, s->m->log);
+}
+
 static noc_status start_element(scan *s, const char *tag, const char *end) {
     element e = { .tag = tag, .crs = s->open.len ? s->open.data[s->open.len - 1].crs : -1 };
     e.name = local_name(tag + 1, &e.name_length);
@@ -251,6 +265,8 @@ static noc_status start_element(scan *s, const char *tag, const char *end) {
         };
     }
     noc_status status = take_crs(s, end);
+    if (!status && !s->depth && s->open.len > 3)
+        status = count_column(s);
     if (!status)
         check_numbers(s, end);
     return !status && end[-1] == '/' ? end_element(s, end + 1) : status;
@@ -367,7 +383,9 @@ static noc_status rewrite(scan *s, bool several) {
 }
 
 noc_status map_gml_look_at_places(map_source *m) {
-    scan s = { .m = m, .text = m->content };
+    scan s = { .m = m, .text = m->content, .columns = noc_calloc(1, sizeof(map_columns)) };
+    if (!s.columns)
+        return noc_no_memory(m->log, m->name);
     find_prefix(&s);
     noc_status status = s.texts.refused ? noc_no_memory(m->log, m->name) : scan_text(&s);
     bool broken = false;
@@ -379,6 +397,7 @@ noc_status map_gml_look_at_places(map_source *m) {
     array_free(&s.open);
     array_free(&s.geometries);
     arena_free(&s.texts);
+    free(s.columns);
     return status;
 }
 

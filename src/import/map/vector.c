@@ -5,6 +5,7 @@
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
 #include "import/lamps/tags.h"
 #include "import/map/features.h"
+#include "import/map/columns.h"
 #include "import/map/osm_ways.h"
 #include "import/map/outlines.h"
 
@@ -437,6 +438,9 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
 
 static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     lamp_writer *w = &m->writer;
+    int columns = gdal.OGR_FD_GetFieldCount(gdal.OGR_L_GetLayerDefn(layer));
+    if (columns > MAP_MOST_COLUMNS)
+        return map_columns_refuse(w->place, m->format->name, w->sink->log);
     noc_status status = judge(m, layer);
     m->building_layer = w->sink->footprint && outline_layer(gdal.OGR_L_GetName(layer));
     if (!status && (!w->strange || w->sink->inspect || w->sink->footprint || w->sink->road))
