@@ -189,4 +189,12 @@ typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4, CLI_NOCT = 8, C
  */
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args);
 
+/* Returns the number, or 0 where no digit of it is shown: "%.3f" makes -0.000 of -0.0002. */
+static inline double cli_shown(double x, int decimals) {
+    double half = .5;
+    for (int i = 0; i < decimals; i++)
+        half /= 10;
+    return x < half && x > -half ? 0 : x;
+}
+
 #endif

@@ -68,7 +68,7 @@ static void print_lamp(const influence_job *job, const noc_reach *r, const noc_r
     double at[3];
     char a[64], b[32];
     to_crs(job, r->emitter.centre, at);
-    snprintf(a, sizeof(a), "%.3f %.3f %.3f", at[0], at[1], at[2]);
+    snprintf(a, sizeof(a), "%.3f %.3f %.3f", cli_shown(at[0], 3), cli_shown(at[1], 3), cli_shown(at[2], 3));
     printf("%s: %s%s\n", *r->emitter.name ? r->emitter.name : "unnamed", noc_emitter_kind_name(r->emitter.kind),
            r->emitter.inferred ? ", inferred" : "");
     print_text("at", a);
@@ -93,10 +93,11 @@ static void print_reach(const influence_job *job, const noc_reach *r, const noc_
     char a[32], name[64];
     to_crs(job, r->most_place, at);
     printf("%-10s%s m2 get 1 lx or more of it; the most, %.4g lx, is at %.3f %.3f %.3f\n", "lights",
-           cli_number(a, r->area), r->most, at[0], at[1], at[2]);
+           cli_number(a, r->area), r->most, cli_shown(at[0], 3), cli_shown(at[1], 3), cli_shown(at[2], 3));
     if (r->far > 0) {
         to_crs(job, r->far_place, at);
-        printf("%-10s%.1f m away 0.1 lx, at %.3f %.3f %.3f\n", "", r->far, at[0], at[1], at[2]);
+        printf("%-10s%.1f m away 0.1 lx, at %.3f %.3f %.3f\n", "", r->far, cli_shown(at[0], 3), cli_shown(at[1], 3),
+               cli_shown(at[2], 3));
     }
     printf("%-10s%.0f of %.0f lm meet surfaces of %s\n", "", r->met, r->emitter.lumens,
            noc_text_many((char[64]){ 0 }, r->objects, "object"));

@@ -143,8 +143,8 @@ static noc_status print_table(influence_job *job) {
     if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
         return NOC_ERR_ARGUMENT;
     noc_text_clean(region, sizeof(region), job->asked);
-    printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", at[0], at[1], at[2],
-           *job->info.given_crs ? job->info.given_crs : "local metres");
+    printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", cli_shown(at[0], 3),
+           cli_shown(at[1], 3), cli_shown(at[2], 3), *job->info.given_crs ? job->info.given_crs : "local metres");
     if (*job->buried)
         printf("it lies %s: a luxmeter there is dark\n", job->buried);
     print_parts(job);

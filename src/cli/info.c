@@ -101,10 +101,10 @@ static void print_extent(const noc_report_file *file) {
     if (!file->has_extent)
         return;
     int decimals = file->degrees ? 6 : 2;
-    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1],
-           decimals, hi[1]);
+    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, cli_shown(lo[0], decimals), decimals,
+           cli_shown(hi[0], decimals), decimals, cli_shown(lo[1], decimals), decimals, cli_shown(hi[1], decimals));
     if (lo[2] != 0 || hi[2] != 0)
-        printf(", z %.2f to %.2f", lo[2], hi[2]);
+        printf(", z %.2f to %.2f", cli_shown(lo[2], 2), cli_shown(hi[2], 2));
     putchar('\n');
 }
 

@@ -75,7 +75,7 @@ static void put_number(line *l, double value, int decimals) {
     else if (decimals < 0)
         printf("%.6g", value);
     else
-        printf("%.*f", decimals, value);
+        printf("%.*f", decimals, cli_shown(value, decimals));
 }
 
 /* What the report does not tell, of built cities and scenes: what the scene does. */

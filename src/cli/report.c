@@ -446,9 +446,10 @@ void cli_print_summary(const render_job *job) {
                "theirs\n",
                scene->maintenance);
     print_issues(job->report);
-    printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
-           job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],
-           job->camera.fov_deg);
+    const double *eye = job->camera.eye, *target = job->camera.target;
+    printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", cli_shown(eye[0], 2),
+           cli_shown(eye[1], 2), cli_shown(eye[2], 2), cli_shown(target[0], 2), cli_shown(target[1], 2),
+           cli_shown(target[2], 2), job->camera.fov_deg);
     printf("  device    %s, %s\n", noc_backend_name(device->backend), noc_text_clean(path, sizeof(path), device->name));
     printf("  time      %s: loading %s, ", noc_text_seconds(a, cli_now() - job->started),
            noc_text_seconds(b, job->loaded - job->started));

@@ -23,6 +23,9 @@ result $? "a street is lit by its lamps, the stronger one first"
 grep -Eq '^ +[0-9.]+ ±[0-9.]+ +100.00 ±0.00 +2 lamps$' out && grep -q '^,"lamp","kind",' well.csv
 result $? "and both are told as one kind"
 
+run influence builtin:single -q --sky 0 --region point:-0.0001,-0.0004,0.5
+grep -q ': at 0\.000 0\.000 0\.500 ' out; result $? "no place is at -0.000"
+
 head -n 1 well.csv | grep -q ',area,crs,lamps_lux,' && [ "$(grep -c '"EPSG:32633' well.csv)" = 2 ]
 result $? "the table names the CRS of its places"
 

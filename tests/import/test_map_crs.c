@@ -283,6 +283,26 @@ static void test_packed(void **state) {
     lamp_sink_end(&s);
 }
 
+/* The index begins as the shapes do: it is none, so that a folder has them once. */
+static void test_shapefile_in_a_folder(void **state) {
+    char path[100], inner[60];
+    snprintf(inner, sizeof(inner), "%s/inner", folder);
+    assert_int_equal(mkdir(inner, 0700), 0);
+    snprintf(path, sizeof(path), "%s/lamps.shp", inner);
+    write_map("ESRI Shapefile", path, "EPSG:25832");
+    noc_scene *scene = noc_scene_create(NULL);
+    noc_report *report = NULL;
+    noc_import_params params = noc_import_default_params();
+    const char *input = inner;
+    assert_int_equal(noc_scene_load(scene, &input, 1, &params, &report), NOC_OK);
+    size_t count = noc_report_file_count(report), shapefiles = 0;
+    for (size_t i = 0; i < count; i++)
+        shapefiles += !strcmp(noc_report_get_file(report, i)->format, "Shapefile");
+    assert_int_equal(shapefiles, 1);
+    noc_report_destroy(report);
+    noc_scene_destroy(scene);
+}
+
 /* GDAL puts the lines of a .prj together with nothing between, and leaves out what a 0 hides in one. */
 static void test_shapefile(void **state) {
     static const struct {
@@ -384,11 +404,12 @@ static void test_geopackage_table(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_geojson),    cmocka_unit_test(test_crs_in_parts),
-        cmocka_unit_test(test_hidden),     cmocka_unit_test(test_plain),
-        cmocka_unit_test(test_flatgeobuf), cmocka_unit_test(test_flatgeobuf_authority),
-        cmocka_unit_test(test_packed),     cmocka_unit_test(test_shapefile),
-        cmocka_unit_test(test_geopackage), cmocka_unit_test(test_geopackage_table),
+        cmocka_unit_test(test_geojson),          cmocka_unit_test(test_crs_in_parts),
+        cmocka_unit_test(test_hidden),           cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_flatgeobuf),       cmocka_unit_test(test_flatgeobuf_authority),
+        cmocka_unit_test(test_packed),           cmocka_unit_test(test_shapefile_in_a_folder),
+        cmocka_unit_test(test_shapefile),        cmocka_unit_test(test_geopackage),
+        cmocka_unit_test(test_geopackage_table),
     };
     return cmocka_run_group_tests(tests, make_pipe, remove_pipe);
 #else

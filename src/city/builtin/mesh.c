@@ -139,11 +139,12 @@ static void add_windows(town *t, town_mat mat, int mesh) {
 }
 
 void town_flush(town *t, const char *fmt, ...) {
-    char name[96];
+    char name[96], poles[104]; /* those of lamps have a name of their own beside what they stand on */
     va_list ap;
     va_start(ap, fmt);
     noc_vsnprintf(name, sizeof(name), fmt, ap);
     va_end(ap);
+    noc_snprintf(poles, sizeof(poles), "%s/poles", name);
     for (int m = 0; m < TM_COUNT; m++) {
         town_batch *b = &t->batch[m];
         if (!b->indices.len)
@@ -153,7 +154,7 @@ void town_flush(town *t, const char *fmt, ...) {
                           .triangle_count = b->indices.len / 3,
                           .indices = b->indices.data,
                           .material = t->material[m],
-                          .name = name };
+                          .name = m == TM_POLE ? poles : name };
         int index = t->failed ? -1 : noc_scene_add_mesh(t->scene, &mesh);
         t->failed = index < 0;
         add_windows(t, (town_mat)m, index);

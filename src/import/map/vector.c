@@ -54,8 +54,11 @@ static bool probe_gml(const char *head, size_t size) {
 
 static bool probe_gpkg(const char *head, size_t size) { return size >= 16 && !memcmp(head, "SQLite format 3", 16); }
 
+/* Its index (.shx) begins alike: behind the head, at byte 100, lies the place of a shape, which is 50, where a
+ * Shapefile has its number, which is 1. */
 static bool probe_shp(const char *head, size_t size) {
-    return size >= 32 && !memcmp(head, "\0\0\x27\x0a", 4) && !memcmp(head + 28, "\xe8\x03\0\0", 4);
+    bool index = size >= 104 && !memcmp(head + 100, "\0\0\0\x32", 4);
+    return !index && size >= 32 && !memcmp(head, "\0\0\x27\x0a", 4) && !memcmp(head + 28, "\xe8\x03\0\0", 4);
 }
 
 static bool probe_fgb(const char *head, size_t size) { return size >= 8 && !memcmp(head, "fgb\3fgb", 7); }
