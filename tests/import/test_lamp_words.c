@@ -57,6 +57,30 @@ static geo_lamp read_one(const char *key, const char *value) {
     return lamp;
 }
 
+static void test_languages(void **state) {
+    static const struct {
+        const char *text;
+        int source;
+    } rows[] = {
+        { "lampada a ioduri metallici 70 W", GEO_SOURCE_METAL_HALIDE },
+        { "monimetalli 70 W", GEO_SOURCE_METAL_HALIDE },
+        { "metalhalogen 70W", GEO_SOURCE_METAL_HALIDE },
+        { "multivapores met\u00e1licos", GEO_SOURCE_METAL_HALIDE },
+        { "Halogen-Metalldampf 150 W", GEO_SOURCE_METAL_HALIDE },
+        { "lampa sodowa 150W", GEO_SOURCE_SODIUM },
+        { "suurpainenatrium 100 W", GEO_SOURCE_SODIUM },
+        { "h\u00f6gtrycksnatrium 70 W", GEO_SOURCE_SODIUM },
+        { "l\u00e5gtrycksnatrium 35 W", GEO_SOURCE_LOW_SODIUM },
+        { "elohopea 125 W", GEO_SOURCE_MERCURY },
+        { "kvicksilver", GEO_SOURCE_MERCURY },
+        { "kvikks\u00f8lv 125W", GEO_SOURCE_MERCURY },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++)
+        if (read_one("lamp_type", rows[i].text).source != (unsigned)rows[i].source)
+            fail_msg("%s: %d", rows[i].text, read_one("lamp_type", rows[i].text).source);
+}
+
 static void test_words(void **state) {
     static const struct {
         const char *key, *value;
@@ -191,10 +215,8 @@ static void test_verdicts(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_quantities),
-        cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_words),
-        cmocka_unit_test(test_verdicts),
+        cmocka_unit_test(test_quantities), cmocka_unit_test(test_directions), cmocka_unit_test(test_languages),
+        cmocka_unit_test(test_words),      cmocka_unit_test(test_verdicts),
     };
     return cmocka_run_group_tests_name("import/lamp_words", tests, NULL, NULL);
 }

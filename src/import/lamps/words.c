@@ -72,6 +72,14 @@ int lamp_source_word(const char *folded) {
         { "halogenmetall*", GEO_SOURCE_METAL_HALIDE },
         { "metallhalogen*", GEO_SOURCE_METAL_HALIDE },
         { "metaalhalogen*", GEO_SOURCE_METAL_HALIDE },
+        { "ioduri", GEO_SOURCE_METAL_HALIDE },
+        { "monimetall*", GEO_SOURCE_METAL_HALIDE },
+        { "metalhalogen*", GEO_SOURCE_METAL_HALIDE },
+        { "multivapor*", GEO_SOURCE_METAL_HALIDE },
+        { "vapores metalicos", GEO_SOURCE_METAL_HALIDE },
+        { "metalldampf*", GEO_SOURCE_METAL_HALIDE },
+        { "halogen metall*", GEO_SOURCE_METAL_HALIDE },
+        { "metalohalogen*", GEO_SOURCE_METAL_HALIDE },
         { "halogenur*", GEO_SOURCE_METAL_HALIDE },
         { "iodure*", GEO_SOURCE_METAL_HALIDE },
         { "alogenuri", GEO_SOURCE_METAL_HALIDE },
@@ -97,6 +105,15 @@ int lamp_source_word(const char *folded) {
         { "vsap", GEO_SOURCE_SODIUM },
         { "sodik*", GEO_SOURCE_SODIUM },
         { "sodov*", GEO_SOURCE_SODIUM },
+        { "sodow*", GEO_SOURCE_SODIUM },
+        { "suurpainenatrium*", GEO_SOURCE_SODIUM },
+        { "pienpainenatrium*", GEO_SOURCE_SODIUM },
+        { "hogtrycksnatrium*", GEO_SOURCE_SODIUM },
+        { "lagtrycksnatrium*", GEO_SOURCE_SODIUM },
+        { "hoytrykknatrium*", GEO_SOURCE_SODIUM },
+        { "hoytrykksnatrium*", GEO_SOURCE_SODIUM },
+        { "lavtrykksnatrium*", GEO_SOURCE_SODIUM },
+        { "hojtryksnatrium*", GEO_SOURCE_SODIUM },
         { "hogedruknatrium*", GEO_SOURCE_SODIUM },
         { "lagedruknatrium*", GEO_SOURCE_SODIUM },
         { "hst", GEO_SOURCE_SODIUM },
@@ -111,6 +128,10 @@ int lamp_source_word(const char *folded) {
         { "hpl*", GEO_SOURCE_MERCURY },
         { "hql*", GEO_SOURCE_MERCURY },
         { "quecksilber*", GEO_SOURCE_MERCURY },
+        { "elohope*", GEO_SOURCE_MERCURY },
+        { "kvicksilv*", GEO_SOURCE_MERCURY },
+        { "kvikksolv*", GEO_SOURCE_MERCURY },
+        { "kviksolv*", GEO_SOURCE_MERCURY },
         { "kwik*", GEO_SOURCE_MERCURY },
         { "mercure", GEO_SOURCE_MERCURY },
         { "mercurio", GEO_SOURCE_MERCURY },
@@ -149,9 +170,9 @@ int lamp_source_word(const char *folded) {
         { "gaz", GEO_SOURCE_GAS },
     };
     static const word low[] = {
-        { "low pressure", 1 }, { "lps*", 1 },           { "sox*", 1 },         { "lst", 1 },
-        { "sbp", 1 },          { "vsbp", 1 },           { "niederdruck*", 1 }, { "lagedruk*", 1 },
-        { "lage druk", 1 },    { "basse pression", 1 }, { "baja presion", 1 }
+        { "low pressure", 1 }, { "lps*", 1 },         { "sox*", 1 },      { "lst", 1 },       { "sbp", 1 },
+        { "vsbp", 1 },         { "niederdruck*", 1 }, { "lagedruk*", 1 }, { "lage druk", 1 }, { "basse pression", 1 },
+        { "baja presion", 1 }, { "pienpaine*", 1 },   { "lagtryck*", 1 }, { "lavtrykk*", 1 }, { "bassa pressione", 1 }
     };
     char parted[300];
     folded = part_watts(folded, parted, sizeof(parted));
