@@ -26,7 +26,7 @@ NOC_API const char *noc_response_name(noc_response response); /* "plane", "semic
 
 typedef struct noc_meter {
     double place[3];  /* local metres */
-    double normal[3]; /* of any length but 0: a plane's; a half cylinder faces its azimuth; not read of the others */
+    double normal[3]; /* of any length but 0: a plane's; a half cylinder faces its azimuth; unused by the others */
     noc_response response;
 } noc_meter;
 

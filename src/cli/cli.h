@@ -184,6 +184,7 @@ void cli_print_lights(const char *rules, const char *groups, const noc_report *r
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
 
 /* output.c */
+bool cli_same_file(const char *a, const char *b); /* both are there, and are one file */
 typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4, CLI_NOCT = 8, CLI_MP4 = 16, CLI_ANY = 32 } cli_ending;
 /* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting.
  */

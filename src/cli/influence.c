@@ -29,14 +29,7 @@ static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
 static const influence_args defaults = {
-    .render = { .command = &cli_influence,
-                .camera = noc_camera_default_params(),
-                .exposure = "auto",
-                .device = CLI_DEVICE,
-                .render = noc_render_default_params(),
-                .display = noc_display_default_params(),
-                .import = noc_import_default_params(),
-                .builtin = noc_builtin_default_params() },
+    .render = CLI_SITE_DEFAULTS(cli_influence),
     .top = 20,
     .time = 10,
     .error = 0.01,
@@ -52,15 +45,7 @@ const cli_command cli_influence = {
     "  nocturne influence city.gml lamps.geojson --lamp node/3116871579\n"
     "Coordinates are in the scene's CRS, of scenes that have none local metres; pixels are those of the camera's "
     "picture of --width by --height.\n",
-    { { options, 0, NULL },
-      { noc_device_options, offsetof(A, render.device), NULL },
-      { cli_camera_options, offsetof(A, render), NULL },
-      { noc_camera_options, offsetof(A, render.camera), NULL },
-      { noc_render_options, offsetof(A, render.render), cli_of_pictures },
-      { noc_import_options, offsetof(A, render.import), NULL },
-      { noc_city_options, offsetof(A, render.builtin.city), NULL },
-      { noc_builtin_options, offsetof(A, render.builtin), NULL },
-      { cli_common_options, 0, NULL } },
+    { { options, 0, NULL }, CLI_SITE_SETS(influence_args) },
     sizeof(influence_args),
     &defaults,
     run,
@@ -82,27 +67,17 @@ static int check_regions(const influence_args *args) {
 static int check(influence_args *args) {
     render_args *render = &args->render;
     if (!render->common.input_count)
-        return cli_usage(&cli_influence, "which city? builtin:city is the built-in one");
+        return cli_usage(&cli_influence, CLI_SITE_NEEDED);
     int status = check_regions(args);
     if (status)
         return status;
     if (args->json && influence_csv_alone(args))
         return cli_usage(&cli_influence, "--json and --csv - exclude each other: both write to standard output");
     status = cli_parse_classes(&cli_influence, "--class", args->classes, &args->class_bits);
-    status = status ? status : cli_choose_camera(render);
-    if (status)
-        return status;
-    cli_add_named(&render->common, &render->import);
-    status = cli_check_city(render);
+    status = status ? status : cli_site_check(render);
     return status || !args->csv || influence_csv_alone(args)
                ? status
                : cli_check_output(&cli_influence, args->csv, CLI_ANY, &render->common);
-}
-
-static bool show(void *user, const char *what, double done) {
-    (void)user;
-    cli_progress_show(done, -1, "%s", what);
-    return !cli_interrupted();
 }
 
 /* The seen luminance is told of pixels alone: a point is seen by nobody. */
@@ -116,8 +91,8 @@ static void tell_buried(influence_job *job) {
     const noc_region_info *r = &job->region_info;
     *job->buried = 0;
     bool place = !strncmp(job->asked, "point:", 6);
-    if (place && !noc_view_buried(job->view, job->scene, r->centre, job->buried, sizeof(job->buried)) && *job->buried &&
-        job->args->csv) {
+    if (place && !noc_view_buried(job->site.view, job->site.scene, r->centre, job->buried, sizeof(job->buried)) &&
+        *job->buried && job->args->csv) {
         char *text = cli_format("%.200s lies %s", job->asked, job->buried);
         cli_log_message(NULL, NOC_LOG_WARN, text);
         free(text);
@@ -127,17 +102,17 @@ static void tell_buried(influence_job *job) {
 static noc_status ask_region(influence_job *job) {
     influence_args *args = job->args;
     const render_args *render = &args->render;
-    noc_region_params of = { .camera = &job->camera,
+    noc_region_params of = { .camera = &job->site.camera,
                              .width = render->render.width,
                              .height = render->render.height,
                              .classes = args->class_bits,
                              .files = true };
-    noc_ranking_params params = { &render->render, influence_has_eye(job->asked) ? job->camera.eye : NULL,
+    noc_ranking_params params = { &render->render, influence_has_eye(job->asked) ? job->site.camera.eye : NULL,
                                   args->count_windows };
     noc_ranking_target target = { .seconds = args->time, .error = args->error };
-    noc_progress progress = { show, job };
-    job->region = noc_region_find(job->view, job->scene, job->asked, &of, job->log);
-    noc_ranking *ranking = job->region ? noc_ranking_create(job->view, job->region, &params) : NULL;
+    noc_progress progress = { cli_load_progress, NULL };
+    job->region = noc_region_find(job->site.view, job->site.scene, job->asked, &of, job->site.log);
+    noc_ranking *ranking = job->region ? noc_ranking_create(job->site.view, job->region, &params) : NULL;
     if (!ranking)
         return NOC_ERR_ARGUMENT;
     noc_region_get_info(job->region, &job->region_info);
@@ -185,43 +160,17 @@ static noc_status ask(influence_job *job) {
     return status;
 }
 
-static noc_status work(influence_job *job) {
-    render_args *render = &job->args->render;
-    const noc_progress progress = { cli_load_progress, NULL };
-    render->import.each_lamp = true;
-    job->scene = noc_scene_create(job->log);
-    noc_status status = cli_load_city(render, job->scene, &progress, &job->report);
-    cli_progress_clear();
-    if (!status)
-        status = noc_scene_place_camera(job->scene, &render->camera,
-                                        (double)render->render.width / render->render.height, &job->camera, NULL);
-    noc_scene_get_info(job->scene, &job->info);
-    job->device = status ? NULL : noc_device_create(&render->device, job->log);
-    job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
-    if (!status && !job->view)
-        status = NOC_ERR_MEMORY;
-    return status ? status : job->args->lamp ? influence_tell_lamp(job) : ask(job);
+static noc_status work(void *user) {
+    influence_job *job = user;
+    influence_args *args = job->args;
+    args->render.import.each_lamp = true;
+    noc_status status = cli_site_open(&job->site, &args->render, false);
+    return status ? status : args->lamp ? influence_tell_lamp(job) : ask(job);
 }
 
 static int run(void *arguments) {
     influence_args *args = arguments;
+    influence_job job = { .args = args };
     int status = check(args);
-    if (status)
-        return status;
-    cli_catch_signals();
-    cli_nothing_to_keep(true);
-    cli_progress_start(args->render.common.quiet);
-    influence_job job = { .args = args, .log = cli_log_create(&args->render.common) };
-    noc_status failed = work(&job);
-    cli_nothing_to_keep(false);
-    noc_view_destroy(job.view);
-    noc_device_destroy(job.device);
-    noc_report_destroy(job.report);
-    noc_scene_destroy(job.scene);
-    noc_log_destroy(job.log);
-    if (cli_interrupted()) {
-        cli_error("interrupted");
-        return CLI_INTERRUPTED + cli_interrupted();
-    }
-    return failed ? CLI_FAILURE : cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    return status ? status : cli_site_run(&job.site, &args->render, work, &job);
 }

@@ -2,7 +2,7 @@
 #ifndef NOC_CLI_INFLUENCE_H
 #define NOC_CLI_INFLUENCE_H
 
-#include "render.h"
+#include "site.h"
 
 /* Arguments of render that it takes, too, and its own. */
 typedef struct influence_args {
@@ -18,17 +18,11 @@ typedef struct influence_args {
 /* Inputs to tables. */
 typedef struct influence_job {
     influence_args *args;
-    noc_log *log;
-    noc_scene *scene;
-    noc_report *report;
-    noc_device *device;
-    noc_view *view;
-    noc_camera camera;
+    cli_site site;
     const char *lead;  /* printed before the next answer */
     const char *asked; /* the region that is answered now, and what is found of it */
     noc_region *region;
     noc_region_info region_info;
-    noc_scene_info info;
     noc_influence_row *rows;
     size_t count;
     noc_influence_sum sum;

@@ -7,12 +7,12 @@
 
 /* The first light of that name, lamps before others; reports one that is not there. */
 static noc_status find(const influence_job *job, size_t *light) {
-    const char **names = cli_alloc((job->info.light_slots + 1) * sizeof(*names));
+    const char **names = cli_alloc((job->site.info.light_slots + 1) * sizeof(*names));
     size_t count = 0, other = SIZE_MAX;
     bool found = false;
-    for (size_t i = 0; i < job->info.light_slots && !found; i++) {
+    for (size_t i = 0; i < job->site.info.light_slots && !found; i++) {
         noc_light_info l;
-        if (noc_scene_get_light(job->scene, i, &l) || l.removed || !l.light.name)
+        if (noc_scene_get_light(job->site.scene, i, &l) || l.removed || !l.light.name)
             continue;
         bool same = !strcmp(l.light.name, job->args->lamp);
         found = same && l.lamp;
@@ -44,7 +44,7 @@ static noc_status find(const influence_job *job, size_t *light) {
 
 static void to_crs(const influence_job *job, const double local[3], double at[3]) {
     memcpy(at, local, 3 * sizeof(*at));
-    if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
+    if (*job->site.info.given_crs && noc_scene_from_local(job->site.scene, NULL, at))
         at[0] = at[1] = at[2] = NAN;
 }
 
@@ -132,7 +132,7 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
     json_place(job, "at", r->emitter.centre);
     json_value("lumens", r->emitter.lumens);
     json_value("kelvin", round(r->emitter.kelvin));
-    json_value("maintenance", job->info.maintenance);
+    json_value("maintenance", job->site.info.maintenance);
     json_value("watts", lamp ? lamp->watts : NAN);
     json_value("height", lamp ? lamp->height : NAN);
     const char *const texts[][2] = { { "profile", lamp ? lamp->profile : "" },
@@ -165,9 +165,9 @@ noc_status influence_tell_lamp(influence_job *job) {
     noc_reach reach;
     noc_status status = find(job, &light);
     noc_reach_object *objects = cli_alloc(top * sizeof(*objects));
-    status = status ? status : noc_view_reach(job->view, light, NULL, &reach, objects, top, &found);
+    status = status ? status : noc_view_reach(job->site.view, light, NULL, &reach, objects, top, &found);
     if (!status) {
-        const noc_report_lamp *lamp = noc_report_find_lamp(job->report, reach.emitter.light);
+        const noc_report_lamp *lamp = noc_report_find_lamp(job->site.report, reach.emitter.light);
         if (job->args->json) {
             print_json(job, &reach, lamp, objects, found);
         } else {

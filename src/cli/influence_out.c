@@ -13,9 +13,9 @@ typedef struct told {
 } told;
 
 static told tell(const influence_job *job, const noc_influence_row *row) {
-    told t = { noc_report_find_lamp(job->report, row->emitter.light), { 0 } };
+    told t = { noc_report_find_lamp(job->site.report, row->emitter.light), { 0 } };
     memcpy(t.at, row->emitter.centre, sizeof(t.at));
-    if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, t.at))
+    if (*job->site.info.given_crs && noc_scene_from_local(job->site.scene, NULL, t.at))
         t.at[0] = t.at[1] = t.at[2] = NAN;
     return t;
 }
@@ -115,9 +115,9 @@ static void print_kinds(const noc_influence_sum *s) {
 }
 
 void influence_print_maintenance(const influence_job *job) {
-    if (job->info.maintenance != 1)
+    if (job->site.info.maintenance != 1)
         printf("lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
-               job->info.maintenance);
+               job->site.info.maintenance);
 }
 
 /* Lamps first, windows beside them, then the sum of what counts. */
@@ -140,11 +140,12 @@ static noc_status print_table(influence_job *job) {
     const noc_region_info *r = &job->region_info;
     double at[3] = { r->centre[0], r->centre[1], r->centre[2] };
     char a[64], b[64], region[100];
-    if (*job->info.given_crs && noc_scene_from_local(job->scene, NULL, at))
+    if (*job->site.info.given_crs && noc_scene_from_local(job->site.scene, NULL, at))
         return NOC_ERR_ARGUMENT;
     noc_text_clean(region, sizeof(region), job->asked);
     printf("%s: %s %.3f %.3f %.3f in %s\n", region, r->point ? "at" : "around", cli_shown(at[0], 3),
-           cli_shown(at[1], 3), cli_shown(at[2], 3), *job->info.given_crs ? job->info.given_crs : "local metres");
+           cli_shown(at[1], 3), cli_shown(at[2], 3),
+           *job->site.info.given_crs ? job->site.info.given_crs : "local metres");
     if (*job->buried)
         printf("it lies %s: a luxmeter there is dark\n", job->buried);
     print_parts(job);
@@ -252,7 +253,7 @@ static noc_status print_json(influence_job *job) {
     const noc_influence_sum *s = &job->sum;
     printf("{\"nocturne\": \"%s\", \"region\": ", noc_version());
     cli_json_text(stdout, job->asked);
-    json_text("crs", job->info.given_crs);
+    json_text("crs", job->site.info.given_crs);
     printf(", \"note\": ");
     cli_json_text(stdout, *job->buried ? job->buried : NULL);
     printf(",\n ");
@@ -261,7 +262,7 @@ static noc_status print_json(influence_job *job) {
     json_estimate("windows", s->kinds[NOC_EMITTER_WINDOW].lux);
     printf(", \"windows_counted\": %s,\n ", s->windows_counted ? "true" : "false");
     json_estimate("lux", s->lux);
-    json_number("maintenance", job->info.maintenance);
+    json_number("maintenance", job->site.info.maintenance);
     printf(",\n ");
     json_estimate("sky", s->sky);
     printf(", ");
@@ -308,7 +309,7 @@ bool influence_csv_alone(const influence_args *args) { return args->csv && !strc
 
 /* One head of names, before the first region's rows. */
 noc_status influence_add_csv(influence_job *job) {
-    char *text = noc_influence_csv(job->scene, job->report, job->rows, job->count, &job->sum, job->classes,
+    char *text = noc_influence_csv(job->site.scene, job->site.report, job->rows, job->count, &job->sum, job->classes,
                                    job->class_count, job->asked);
     if (!text)
         cli_no_memory();
@@ -324,5 +325,5 @@ noc_status influence_write_csv(influence_job *job) {
         fputs(job->csv, stdout); /* which is looked at in the end */
         return NOC_OK;
     }
-    return noc_text_save(job->args->csv, job->csv, strlen(job->csv), job->log);
+    return noc_text_save(job->args->csv, job->csv, strlen(job->csv), job->site.log);
 }

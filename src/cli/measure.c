@@ -18,8 +18,8 @@ static const noc_option *options(void) {
           "CRS of the raster, of --te and --points; else the scene's" },
         { "on", "Measure", NOC_OPTION_TEXT, offsetof(A, on), 0, 0, NULL, "NAMES",
           "surfaces of these classes alone, such as road,sidewalk; else all ground" },
-        { "height", "Measure", NOC_OPTION_REAL, offsetof(A, height), -1000, 1000, NULL, "m",
-          "over the ground, where the luxmeter is held, of the raster and of regions" },
+        { "meter-height", "Measure", NOC_OPTION_REAL, offsetof(A, meter_height), -1000, 1000, NULL, "m",
+          "of the luxmeter over the ground, of the raster and of regions" },
         { "points", "Measure", NOC_OPTION_TEXT, offsetof(A, points), 0, 0, NULL, "FILE",
           "measure at these: x y z nx ny nz a line, as rtrace -I has them; - = standard input" },
         { "response", "Measure", NOC_OPTION_CHOICE, offsetof(A, response), 0, 0,
@@ -42,16 +42,9 @@ static const noc_option *options(void) {
 static int run(void *arguments);
 
 static const measure_args defaults = {
-    .render = { .command = &cli_measure,
-                .camera = noc_camera_default_params(),
-                .exposure = "auto",
-                .device = CLI_DEVICE,
-                .render = noc_render_default_params(),
-                .display = noc_display_default_params(),
-                .import = noc_import_default_params(),
-                .builtin = noc_builtin_default_params() },
+    .render = CLI_SITE_DEFAULTS(cli_measure),
     .grid = 1,
-    .height = 0.003,
+    .meter_height = 0.003,
     .error = 0.05,
     .samples = 1024,
 };
@@ -67,15 +60,7 @@ const cli_command cli_measure = {
     "  nocturne measure town.yaml --points points.txt -o lux.csv\n"
     "Lamps and the sky count (--sky 0: lamps alone), direct light alone. Coordinates are in the scene's CRS, of scenes "
     "that have none local metres.\n",
-    { { options, 0, NULL },
-      { noc_device_options, offsetof(A, render.device), NULL },
-      { cli_camera_options, offsetof(A, render), NULL },
-      { noc_camera_options, offsetof(A, render.camera), NULL },
-      { noc_render_options, offsetof(A, render.render), cli_of_pictures },
-      { noc_import_options, offsetof(A, render.import), NULL },
-      { noc_city_options, offsetof(A, render.builtin.city), NULL },
-      { noc_builtin_options, offsetof(A, render.builtin), NULL },
-      { cli_common_options, 0, NULL } },
+    { { options, 0, NULL }, CLI_SITE_SETS(measure_args) },
     sizeof(measure_args),
     &defaults,
     run,
@@ -85,26 +70,47 @@ const cli_command cli_measure = {
 
 static bool to_stdout(const measure_args *args) { return args->render.output && !strcmp(args->render.output, "-"); }
 
-static int check_what(const measure_args *args) {
-    const char *output = args->render.output;
-    if (!args->render.common.input_count)
-        return cli_usage(&cli_measure, "which city? builtin:city is the built-in one");
-    if (!output && !args->points && !args->regions.count)
-        return cli_usage(&cli_measure, "what is to be measured? -o lux.tif, --points FILE, or --region street:NAME");
-    if (args->points && args->regions.count)
-        return cli_usage(&cli_measure, "--points and --region exclude each other");
+/* Refuses options of a raster that is not asked for, and of meters on the ground beside those of --points. */
+static int check_use(const measure_args *args) {
+    static const char *const of_raster[] = { "grid", "te", "on" };
+    bool raster = args->render.output && !args->points;
+    for (size_t i = 0; i < sizeof(of_raster) / sizeof(*of_raster) && !raster; i++)
+        if (cli_given(&args->render.common, of_raster[i]))
+            return cli_usage(&cli_measure, "--%s is for a raster: -o LUX.tif without --points", of_raster[i]);
+    if (args->points && cli_given(&args->render.common, "meter-height"))
+        return cli_usage(&cli_measure, "--meter-height is for a raster and --region: --points has heights of its own");
     if (!args->points && args->response)
         return cli_usage(&cli_measure, "--response is for --points");
+    return CLI_OK;
+}
+
+static int check_file(const measure_args *args) {
+    const char *output = args->render.output;
     if (to_stdout(args) && !args->points)
         return cli_usage(&cli_measure, "-o - is for --points: a GeoTIFF is a file");
     const char *dot = output && !args->points ? strrchr(output, '.') : NULL;
     if (output && !args->points && (!dot || (strcasecmp(dot, ".tif") && strcasecmp(dot, ".tiff"))))
         return cli_usage(&cli_measure, "%.100s must end in .tif: the raster is a GeoTIFF", output);
+    if (output && args->points && !to_stdout(args) && cli_same_file(output, args->points)) {
+        cli_error("%.100s has the points of --points; it would be overwritten", output);
+        return CLI_FAILURE;
+    }
+    return CLI_OK;
+}
+
+static int check_what(const measure_args *args) {
+    if (!args->render.common.input_count)
+        return cli_usage(&cli_measure, CLI_SITE_NEEDED);
+    if (!args->render.output && !args->points && !args->regions.count)
+        return cli_usage(&cli_measure, "what is to be measured? -o lux.tif, --points FILE, or --region street:NAME");
+    if (args->points && args->regions.count)
+        return cli_usage(&cli_measure, "--points and --region exclude each other");
     for (size_t i = 0; i < args->regions.count; i++)
         if (!strncmp(args->regions.text[i], "object:", 7))
             return cli_usage(&cli_measure, "--region object:ID has surfaces, not points: nocturne influence has their "
                                            "mean");
-    return CLI_OK;
+    int status = check_use(args);
+    return status ? status : check_file(args);
 }
 
 static int parse_extent(measure_job *job) {
@@ -125,11 +131,7 @@ static int check(measure_job *job) {
     int status = check_what(args);
     status = status ? status : parse_extent(job);
     status = status ? status : cli_parse_classes(&cli_measure, "--on", args->on, &job->raster.classes);
-    status = status ? status : cli_choose_camera(render);
-    if (status)
-        return status;
-    cli_add_named(&render->common, &render->import);
-    status = cli_check_city(render);
+    status = status ? status : cli_site_check(render);
     return status || !render->output || to_stdout(args)
                ? status
                : cli_check_output(&cli_measure, render->output, CLI_ANY, &render->common);
@@ -137,70 +139,28 @@ static int check(measure_job *job) {
 
 /* ---- the work ---- */
 
-static bool show(void *user, const char *what, double done) {
-    (void)user;
-    cli_progress_show(done, -1, "%s", what);
-    return !cli_interrupted();
-}
-
-/* A plan of street lighting may not rely on windows. */
-static noc_status darken_windows(measure_job *job) {
-    noc_window_params windows = job->args->render.import.window;
-    windows.lit_windows = 0;
-    noc_status status = job->args->count_windows ? NOC_OK : noc_scene_set_windows(job->scene, &windows);
-    return status || job->args->count_windows ? status : noc_scene_commit(job->scene);
-}
-
-static noc_status open_city(measure_job *job) {
-    render_args *render = &job->args->render;
-    const noc_progress progress = { cli_load_progress, NULL };
-    job->scene = noc_scene_create(job->log);
-    noc_status status = cli_load_city(render, job->scene, &progress, &job->report);
-    cli_progress_clear();
-    status = status ? status : darken_windows(job);
-    if (!status)
-        status = noc_scene_place_camera(job->scene, &render->camera,
-                                        (double)render->render.width / render->render.height, &job->camera, NULL);
-    noc_scene_get_info(job->scene, &job->info);
-    job->device = status ? NULL : noc_device_create(&render->device, job->log);
-    job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
-    return status || job->view ? status : NOC_ERR_MEMORY;
-}
-
-static noc_status work(measure_job *job) {
+static noc_status work(void *user) {
+    measure_job *job = user;
     measure_args *args = job->args;
-    noc_status status = open_city(job);
+    point_list points = { 0 };
+    noc_status status = args->points ? measure_read_points(args, &points) : NOC_OK;
+    /* A plan of street lighting may not rely on windows. */
+    status = status ? status : cli_site_open(&job->site, &args->render, !args->count_windows);
     job->params = (noc_measure_params){ &args->render.render, args->error, 0.1, args->samples };
     job->raster.crs = args->crs;
     job->raster.step = args->grid;
-    job->raster.height = args->height;
-    job->progress = (noc_progress){ show, job };
+    job->raster.height = args->meter_height;
+    job->progress = (noc_progress){ cli_load_progress, NULL };
     if (!status && args->points)
-        return measure_points(job);
+        status = measure_points(job, &points);
+    measure_free_points(&points);
     status = status || !args->regions.count ? status : measure_regions(job);
-    return status || !args->render.output ? status : measure_raster(job);
+    return status || !args->render.output || args->points ? status : measure_raster(job);
 }
 
 static int run(void *arguments) {
     measure_args *args = arguments;
     measure_job job = { .args = args };
     int status = check(&job);
-    if (status)
-        return status;
-    cli_catch_signals();
-    cli_nothing_to_keep(true);
-    cli_progress_start(args->render.common.quiet);
-    job.log = cli_log_create(&args->render.common);
-    noc_status failed = work(&job);
-    cli_nothing_to_keep(false);
-    noc_view_destroy(job.view);
-    noc_device_destroy(job.device);
-    noc_report_destroy(job.report);
-    noc_scene_destroy(job.scene);
-    noc_log_destroy(job.log);
-    if (cli_interrupted()) {
-        cli_error("interrupted");
-        return CLI_INTERRUPTED + cli_interrupted();
-    }
-    return failed ? CLI_FAILURE : cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    return status ? status : cli_site_run(&job.site, &args->render, work, &job);
 }

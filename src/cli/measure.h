@@ -2,7 +2,7 @@
 #ifndef NOC_CLI_MEASURE_H
 #define NOC_CLI_MEASURE_H
 
-#include "render.h"
+#include "site.h"
 
 /* Arguments of render that it takes, too, and its own. */
 typedef struct measure_args {
@@ -10,8 +10,8 @@ typedef struct measure_args {
     const char *points;
     noc_texts regions;
     const char *extent, *crs, *on;
-    double grid, height; /* in units of the CRS; m */
-    int response;        /* noc_response */
+    double grid, meter_height; /* in units of the CRS; m */
+    int response;              /* noc_response */
     double error;
     int samples;
     bool json, count_windows;
@@ -19,21 +19,25 @@ typedef struct measure_args {
 
 typedef struct measure_job {
     measure_args *args;
-    noc_log *log;
-    noc_scene *scene;
-    noc_scene_info info;
-    noc_report *report;
-    noc_device *device;
-    noc_view *view;
-    noc_camera camera;
+    cli_site site;
     noc_measure_params params;
     noc_raster_params raster;
     noc_progress progress;
     const char *lead; /* printed before the next answer */
 } measure_job;
 
-/* measure_points.c: --points */
-noc_status measure_points(measure_job *job);
+/* The meters of a file, and their places as it has them. */
+typedef struct point_list {
+    noc_meter *meters;
+    double *xyz; /* 3 each, in the CRS; local metres once the city is open */
+    double *said;
+    size_t count, capacity;
+} point_list;
+
+/* measure_points.c: --points. Reads the file, before the city is open; then measures. Both report what is wrong. */
+noc_status measure_read_points(const measure_args *args, point_list *list);
+noc_status measure_points(measure_job *job, point_list *list);
+void measure_free_points(point_list *list);
 
 /* measure_out.c: figures of regions and of the raster, which it writes */
 noc_status measure_regions(measure_job *job);

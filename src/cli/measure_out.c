@@ -35,13 +35,13 @@ static void print_json(measure_job *job, const told *t) {
                  { "percentile_95", f->high },
                  { "reading_error", t->info.error },
                  { "readings_over_error", (double)t->info.short_of_it },
-                 { "maintenance", job->info.maintenance },
+                 { "maintenance", job->site.info.maintenance },
                  { "sky", job->args->render.render.sky },
                  { "seconds", t->info.seconds } };
     printf("%s{\"nocturne\": \"%s\", \"measured\": ", job->lead, noc_version());
     cli_json_text(stdout, t->what);
     printf(",\n  \"crs\": ");
-    cli_json_text(stdout, job->info.given_crs);
+    cli_json_text(stdout, job->site.info.given_crs);
     printf(",\n  \"windows_counted\": %s", job->args->count_windows ? "true" : "false");
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         json_figure(rows[i].name, rows[i].value);
@@ -65,9 +65,9 @@ static void print_text(measure_job *job, const told *t) {
         printf("  error       %.2g %% of a reading (median); %s over %.3g %%\n", 100 * t->info.error,
                noc_text_count(count, t->info.short_of_it), 100 * job->params.error);
     }
-    if (job->info.maintenance != 1)
+    if (job->site.info.maintenance != 1)
         printf("  lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
-               job->info.maintenance);
+               job->site.info.maintenance);
     printf("  windows %s\n", job->args->count_windows ? "count" : "are dark (--count-windows)");
 }
 
@@ -84,10 +84,12 @@ static void tell(measure_job *job, const told *t) {
 /* Its parts are points: a place, or one in each cell of the ground. */
 static noc_status find_meters(measure_job *job, const char *text, noc_meter **meters, noc_region_info *info) {
     const noc_render_params *render = &job->args->render.render;
-    noc_region_params of = {
-        .camera = &job->camera, .width = render->width, .height = render->height, .crs = job->args->crs, .files = true
-    };
-    noc_region *region = noc_region_find(job->view, job->scene, text, &of, job->log);
+    noc_region_params of = { .camera = &job->site.camera,
+                             .width = render->width,
+                             .height = render->height,
+                             .crs = job->args->crs,
+                             .files = true };
+    noc_region *region = noc_region_find(job->site.view, job->site.scene, text, &of, job->site.log);
     if (!region)
         return NOC_ERR_ARGUMENT;
     noc_region_get_info(region, info);
@@ -96,7 +98,7 @@ static noc_status find_meters(measure_job *job, const char *text, noc_meter **me
         noc_patch p;
         noc_region_get_patch(region, i, &p);
         for (int k = 0; k < 3; k++) {
-            (*meters)[i].place[k] = p.p[k] + job->args->height * p.n[k];
+            (*meters)[i].place[k] = p.p[k] + job->args->meter_height * p.n[k];
             (*meters)[i].normal[k] = p.n[k];
         }
     }
@@ -113,11 +115,11 @@ static noc_status measure_region(measure_job *job, const char *text) {
         return status;
     noc_reading *readings = cli_alloc(info.patches * sizeof(*readings));
     float *lux = cli_alloc(info.patches * sizeof(*lux));
-    status = noc_measure_points(job->view, meters, info.patches, &job->params, &job->progress, readings, &t.info);
+    status = noc_measure_points(job->site.view, meters, info.patches, &job->params, &job->progress, readings, &t.info);
     cli_progress_clear();
     for (size_t i = 0; i < info.patches; i++)
         lux[i] = (float)readings[i].lux;
-    status = status ? status : noc_lux_figures_of(lux, NULL, info.patches, &t.figures, job->log);
+    status = status ? status : noc_lux_figures_of(lux, NULL, info.patches, &t.figures, job->site.log);
     t.area = strncmp(text, "street:", 7) && strncmp(text, "polygon:", 8) ? 0 : info.weight;
     if (!status)
         tell(job, &t);
@@ -143,11 +145,9 @@ noc_status measure_regions(measure_job *job) {
 
 static noc_status tell_raster(measure_job *job, const noc_raster *r, told *t) {
     size_t area = (size_t)r->width * (size_t)r->height;
-    noc_status status = noc_lux_figures_of(r->lux, r->share, area, &t->figures, job->log);
+    noc_status status = noc_lux_figures_of(r->lux, r->share, area, &t->figures, job->site.log);
     if (status)
         return status;
-    if (!t->figures.readings)
-        cli_log_message(NULL, NOC_LOG_WARN, "no pixel of the raster has such ground: all of it is nodata");
     if (!job->args->json)
         printf("%s%d x %d pixels of %g: ", job->lead, r->width, r->height, r->step);
     job->lead = job->args->json ? job->lead : "";
@@ -162,13 +162,13 @@ noc_status measure_raster(measure_job *job) {
     told t = { .what = args->render.output };
     char sky[32], maintenance[32], error[32], key[NOC_CONTENT_KEY];
     job->lead = job->lead ? job->lead : "";
-    noc_raster *r = noc_measure_raster(job->view, &job->raster, &job->params, &job->progress, &t.info);
+    noc_raster *r = noc_measure_raster(job->site.view, &job->raster, &job->params, &job->progress, &t.info);
     cli_progress_clear();
     if (!r)
         return NOC_ERR_FORMAT;
-    noc_scene_content(job->scene, key);
+    noc_scene_content(job->site.scene, key);
     snprintf(sky, sizeof(sky), "%.6g", args->render.render.sky);
-    snprintf(maintenance, sizeof(maintenance), "%g", job->info.maintenance);
+    snprintf(maintenance, sizeof(maintenance), "%g", job->site.info.maintenance);
     snprintf(error, sizeof(error), "%g", args->error);
     const char *const items[][2] = { { "TIFFTAG_SOFTWARE", "nocturne" },
                                      { "NOCTURNE_VERSION", noc_version() },
@@ -179,7 +179,13 @@ noc_status measure_raster(measure_job *job) {
                                      { "NOCTURNE_BOUNCES", "0" },
                                      { "NOCTURNE_ERROR", error },
                                      { NULL, NULL } };
-    noc_status status = noc_raster_write(r, args->render.output, items, job->log);
+    noc_status status = NOC_OK;
+    if (!t.info.readings) {
+        cli_error("%.100s: not written: no pixel of the raster has such ground, all of it is nodata",
+                  args->render.output);
+        status = NOC_ERR_ARGUMENT;
+    }
+    status = status ? status : noc_raster_write(r, args->render.output, items, job->site.log);
     status = status ? status : tell_raster(job, r, &t);
     noc_raster_destroy(r);
     return status;

@@ -34,10 +34,15 @@ static int check_folder(const char *path, const char *shown) {
     return status;
 }
 
+bool cli_same_file(const char *a, const char *b) {
+    struct stat x, y;
+    return !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args) {
     char shown[120];
     noc_text_clean(shown, sizeof(shown), path);
-    struct stat st, input;
+    struct stat st;
     bool exists = !stat(path, &st), too_long = !exists && errno == ENAMETOOLONG;
     if (exists && S_ISDIR(st.st_mode)) {
         cli_error("%s is a folder; name a file in it", shown);
@@ -57,7 +62,7 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
         return CLI_FAILURE;
     }
     for (size_t i = 0; exists && i < args->input_count; i++) {
-        if (!stat(args->inputs[i], &input) && input.st_dev == st.st_dev && input.st_ino == st.st_ino) {
+        if (cli_same_file(args->inputs[i], path)) {
             cli_error("%s is an input too; it would be overwritten", shown);
             return CLI_FAILURE;
         }

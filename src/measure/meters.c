@@ -18,7 +18,7 @@ typedef struct meter_block {
     int width, height;
 } meter_block;
 
-static double length(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+static double length(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
 static noc_status check_meters(const noc_meter *meters, size_t count, noc_log *log) {
     for (size_t i = 0; i < count; i++) {
@@ -30,7 +30,7 @@ static noc_status check_meters(const noc_meter *meters, size_t count, noc_log *l
         for (int k = 0; k < 3; k++)
             if (!(fabs(m->place[k]) < 1e7))
                 return noc_error(log, NOC_ERR_ARGUMENT, "measure: meter %zu stands nowhere, or beyond 10 000 km", i);
-        if (turned && !(l > 1e-30 && l < 1e30))
+        if (turned && !(l > 0 && isfinite(l)))
             return noc_error(log, NOC_ERR_ARGUMENT, "measure: meter %zu faces nowhere", i);
     }
     return NOC_OK;

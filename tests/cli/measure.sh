@@ -67,7 +67,7 @@ python3 - <<'PY'
 import csv, json
 rows = list(csv.DictReader(open('readings.csv')))
 who = json.load(open('who.json'))
-assert len(rows) == 3 and list(rows[0]) == 'x y z nx ny nz lux error samples'.split(), rows
+assert len(rows) == 3 and list(rows[0]) == 'x y z nx ny nz lux error samples note'.split(), rows
 lux, error = (float(rows[0][k]) for k in ('lux', 'error'))
 off = abs(lux - who['lux'])
 assert off <= 4 * (error ** 2 + who['lux_error'] ** 2) ** .5 + 1e-3 * lux and lux > 1, (rows[0], who['lux'])
@@ -78,6 +78,22 @@ result $? "points in, readings out"
 printf '0 0 0.001\n' | "$program" measure lamp.obj -q --points - --response hemisphere >out 2>err &&
     [ "$(wc -l <out)" = 2 ]
 result $? "points come by a pipe"
+
+# A byte order mark, normals of any length, and points inside a body
+printf '\357\273\277' >points.txt
+printf '0 0 0.001 0 0 1e-200\n0 0 0.001 0 0 1e200\n' >>points.txt
+run measure lamp.obj -q --sky 0 --points points.txt && cp out readings.csv
+python3 - <<'PY'
+import csv
+rows = list(csv.DictReader(open('readings.csv')))
+lux = [float(r['lux']) for r in rows]
+assert [r['nz'] for r in rows] == ['1', '1'] and [r['note'] for r in rows] == ['', ''], rows
+assert lux[0] > 1 and abs(lux[1] - lux[0]) < 0.05 * lux[0], rows
+PY
+result $? "normals of any length"
+printf '10 10 -0.3\n' | "$program" measure builtin:city -q --points - >out 2>err &&
+    sed -n 2p out | grep -q ',8,"below the ground by 0.4 m"$'
+result $? "why a point is dark"
 
 mean() {
     "$program" measure builtin:city -q --json --region "street:street 1" "$@" | sed -n 's/.*"mean": \([0-9.]*\),/\1/p'
@@ -98,6 +114,25 @@ expect "a raster has an end" 1 'a smaller extent, or larger pixels' \
     measure builtin:city -q -o a.tif --te=-1e6,-1e6,1e6,1e6
 expect "a scene without a CRS has no other one" 1 'has no CRS' \
     measure builtin:single -q -o a.tif --t-srs EPSG:25832
+for option in "--on road" "--te 0,0,9,9" "--grid 2"; do
+    expect "${option%% *} is for a raster" 2 "${option%% *} is for a raster" \
+        measure builtin:single --region point:0,0 $option
+    expect "${option%% *} is not for points" 2 "${option%% *} is for a raster" \
+        measure builtin:single --points points.txt -o a.csv $option
+done
+expect "points have their heights" 2 '--meter-height is for a raster' \
+    measure builtin:single --points points.txt --meter-height 1
+expect "points are not written over" 1 'points.txt has the points of --points' \
+    measure builtin:single --points points.txt -o ./points.txt
+expect "a half cylinder faces somewhere" 1 'points.txt:1: the normal has no azimuth' \
+    measure builtin:single --points points.txt --response semicylinder
+expect "points are read before the city" 1 'points.txt:1: the normal has no azimuth' \
+    measure nowhere.gml --points points.txt --response semicylinder
+if $gdal; then
+    expect "a raster without ground" 1 'none.tif: not written: no pixel of the raster has such ground' \
+        measure builtin:single -q --on water -o none.tif
+    [ ! -e none.tif ]; result $? "and it is not written"
+fi
 printf '1 2\n' >bad.txt
 expect "a point has three numbers" 1 'bad.txt:1: "1 2 ?" is not x y z' measure builtin:single -q --points bad.txt
 printf '1 2 3\n1 2 3 0 0 0\n' >bad.txt
