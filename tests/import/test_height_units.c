@@ -264,6 +264,36 @@ static void test_outline(void **state) {
                        .25); /* over the ground that is put under it */
 }
 
+/* Heights of a map's outlines in the United States, without a unit. */
+static void test_footprints(void **state) {
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        char text[4000] = "{\"type\":\"FeatureCollection\",\"features\":[";
+        for (int k = 0; k < 12; k++) {
+            size_t n = strlen(text);
+            double x = -83.1 + k * 3e-4;
+            snprintf(text + n, sizeof(text) - n,
+                     "%s{\"type\":\"Feature\",\"properties\":{\"building\":\"yes\",\"BLDGHEIGHT\":%s},\"geometry\":{"
+                     "\"type\":\"Polygon\",\"coordinates\":[[[%.4f,40.1],[%.4f,40.1],[%.4f,40.1001],[%.4f,40.1]]]}}",
+                     k ? "," : "",
+                     i == 1   ? "9"
+                     : i == 3 ? "\"28 ft\""
+                              : "28",
+                     x, x + 1e-4, x + 1e-4, x);
+        }
+        strcat(text, "]}");
+        const char *path = write_file("outlines.geojson", text);
+        char by[60];
+        noc_import_params params = plain();
+        params.footprints = true;
+        if (i == 2)
+            params.height_unit = (noc_texts){ .text = { "ft" }, .count = 1 };
+        double height = height_of(&path, 1, &params, by, sizeof(by));
+        assert_float_equal(height, i == 0 ? 28 : i == 1 ? 9 : 28 * .3048, .25);
+        assert_int_equal(strstr(told, "are heights in feet?") != NULL, i == 0);
+    }
+}
+
 static void test_refused(void **state) {
     static const struct {
         const char *option, *told;
@@ -289,7 +319,8 @@ static void test_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cities),          cmocka_unit_test(test_terrain), cmocka_unit_test(test_lamps),
-        cmocka_unit_test(test_lamps_on_ground), cmocka_unit_test(test_outline), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_lamps_on_ground), cmocka_unit_test(test_outline), cmocka_unit_test(test_footprints),
+        cmocka_unit_test(test_refused),
     };
     assert_non_null(mkdtemp(folder));
     log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });

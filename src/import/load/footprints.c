@@ -16,11 +16,23 @@ static void count_one(input *in) {
     in->file.lod_used[1]++;
 }
 
+/* Side of a square as large as the outline's box [m]. */
+static double width_of(const geo_footprint *f) {
+    double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+    for (size_t i = 0; i < f->ring_size[0]; i++)
+        for (int k = 0; k < 2; k++) {
+            lo[k] = NOC_MIN(lo[k], f->xyz[3 * i + k]);
+            hi[k] = NOC_MAX(hi[k], f->xyz[3 * i + k]);
+        }
+    return hi[0] > lo[0] ? sqrt((hi[0] - lo[0]) * (hi[1] - lo[1])) : 0;
+}
+
 noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footprint *f) {
     pending_footprint p = { .footprint = *f, .input = index };
     if (!isfinite(f->height) && !isfinite(f->levels))
         geo_issue(in->issues, GEO_GUESSED, "height of a building, by --building-height", f->id);
     const building_size size = { .height = (float)f->height,
+                                 .width = (float)width_of(f),
                                  .storey = f->levels >= 2 ? (float)(f->height / f->levels) : 0 };
     if (isfinite(f->height) && !array_push(&in->sizes, size))
         return noc_no_memory(im->log, in->path);
