@@ -166,6 +166,27 @@ static bool lies_at(const raster_work *w, int i, size_t *at) {
     return x >= 0 && y >= 0 && x < r->width && y < r->height;
 }
 
+/* Few samples may miss what is rare, such as the sky's brightest draws: then the spread of a dark pixel is too small,
+ * and its mean too low. So its error is at least that by the mean variance of neighbours in the block that are dark,
+ * too. */
+static double pooled_error(const raster_work *w, int i, double own) {
+    enum { REACH = 3 };
+    const double dark = 5 * w->m.params.least;
+    int cx = i % BLOCK_PIXELS, cy = i / BLOCK_PIXELS;
+    double variance = 0, count = 0;
+    if (!w->tallies[i].samples || w->tallies[i].mean >= dark)
+        return own;
+    for (int y = NOC_MAX(cy - REACH, 0); y <= NOC_MIN(cy + REACH, BLOCK_PIXELS - 1); y++)
+        for (int x = NOC_MAX(cx - REACH, 0); x <= NOC_MIN(cx + REACH, BLOCK_PIXELS - 1); x++) {
+            const tally *t = &w->tallies[y * BLOCK_PIXELS + x];
+            if (t->samples < 2 || t->mean >= dark)
+                continue;
+            variance += t->squares / (t->samples - 1.0);
+            count++;
+        }
+    return count > 0 ? fmax(own, sqrt(variance / count / w->tallies[i].samples)) : own;
+}
+
 static noc_status keep(raster_work *w, uint32_t frames) {
     noc_raster *r = w->raster;
     noc_status status = NOC_OK;
@@ -174,6 +195,7 @@ static noc_status keep(raster_work *w, uint32_t frames) {
         if (!lies_at(w, i, &at))
             continue;
         noc_reading of = reading_of(&w->tallies[i], frames);
+        of.error = pooled_error(w, i, of.error);
         r->lux[at] = (float)of.lux;
         r->error[at] = (float)of.error;
         r->share[at] = (float)of.share;

@@ -146,6 +146,58 @@ static void a_raster_is_means_of_areas(void **state) {
     noc_scene_destroy(s);
 }
 
+/* On open ground, lit by the sky and one lamp, the share of pixels beyond three stated errors, over seeds, by bands.
+ * The sky gives all of them as much: the mean of what the lamp does not give. */
+static void errors_hold_on_dark_ground(void **state) {
+    (void)state;
+    enum { SEEDS = 6, SIDE = 64, AREA = SIDE * SIDE };
+    static const double bands[] = { 0, 0.03, 0.05, 0.2, 2, 1e9 };
+    static float lux[SEEDS][AREA], error[SEEDS][AREA];
+    static double lamp[AREA];
+    noc_scene *s = lit_floor(false, NULL);
+    noc_raster_params p = noc_raster_default_params();
+    memcpy(p.extent, (const double[]){ 0, 0, 96, 96 }, sizeof(p.extent));
+    p.step = 1.5;
+    p.height = 0;
+    double sky = 0;
+    for (int i = 0; i < AREA; i++)
+        lamp[i] = lux_over(i % SIDE * p.step, (SIDE - 1 - i / SIDE) * p.step, p.step);
+    for (int seed = 0; seed < SEEDS; seed++) {
+        noc_render_params render = dark;
+        noc_measure_params params = noc_measure_default_params();
+        params.render = &render;
+        render.seed = (uint32_t)seed;
+        noc_view *v = own_view(s, 2, NULL);
+        noc_raster *r = noc_measure_raster(v, &p, &params, NULL, NULL);
+        assert_true(r && r->width == SIDE && r->height == SIDE);
+        memcpy(lux[seed], r->lux, sizeof(lux[seed]));
+        memcpy(error[seed], r->error, sizeof(error[seed]));
+        for (int i = 0; i < AREA; i++)
+            sky += lamp[i] < 0.1 ? (r->lux[i] - lamp[i]) / SEEDS : 0;
+        noc_raster_destroy(r);
+        close_view(v);
+    }
+    double dim = 0;
+    for (int i = 0; i < AREA; i++)
+        dim += lamp[i] < 0.1;
+    sky /= dim;
+    for (size_t b = 0; b + 1 < sizeof(bands) / sizeof(*bands); b++) {
+        double in = 0, beyond = 0, squares = 0;
+        for (int k = 0; k < SEEDS * AREA; k++) {
+            double want = lamp[k % AREA] + sky, off = fabs(lux[k / AREA][k % AREA] - want);
+            bool here = want >= bands[b] && want < bands[b + 1];
+            in += here;
+            squares += here ? off * off / pow(error[k / AREA][k % AREA], 2) : 0;
+            beyond += here && off > 3 * error[k / AREA][k % AREA];
+        }
+        print_message("# from %g lx: %.0f pixels, %.2f %% beyond three errors, %.2f errors off (rms)\n", bands[b], in,
+                      100 * beyond / fmax(in, 1), sqrt(squares / fmax(in, 1)));
+        if (in > 1000)
+            assert_true(beyond <= 0.02 * in);
+    }
+    noc_scene_destroy(s);
+}
+
 /* A pixel of the lattice is the same in every raster that has it. */
 static void cuts_and_threads_change_nothing(void **state) {
     (void)state;
@@ -307,6 +359,7 @@ int main(void) {
         cmocka_unit_test(a_lamp_by_its_distance),
         cmocka_unit_test(other_responses),
         cmocka_unit_test(a_raster_is_means_of_areas),
+        cmocka_unit_test(errors_hold_on_dark_ground),
         cmocka_unit_test(cuts_and_threads_change_nothing),
         cmocka_unit_test(figures_of_readings),
         cmocka_unit_test(what_makes_no_sense_is_refused),
