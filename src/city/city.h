@@ -56,9 +56,13 @@ typedef struct city_lamp_light {
     const char *profile; /* "": none; city_profiles' */
 } city_lamp_light;
 
+/* Lamps lower than that are bollards, and have at most that flux where they tell none [m], [lm]. */
+#define CITY_BOLLARD_HEIGHT 1.5
+#define CITY_BOLLARD_LUMENS 500.0
+
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
-    double height, lumens, kelvin;
+    double height, lumens, kelvin; /* of lamps that do not tell theirs */
     bool has_floor;
     double floor;                  /* where a lamp stands that has no ground near: taken before any lamp is stood */
     struct city_lamp_tally *tally; /* counted up; may be NULL */

@@ -107,11 +107,18 @@ static void choose_light(lamp_fitting *f, const city_lamp_params *params) {
     f->profiled = params->profiles && f->ruled.profile != GEO_NO_PROFILE;
 }
 
+/* Of one head of a lamp that tells none. What shines upward or is hung up may be low, and as bright as any. */
+static double assumed_lumens(const geo_lamp *lamp, const city_lamp_params *params) {
+    bool bollard = known(lamp->height, 0) > 0 && lamp->height < CITY_BOLLARD_HEIGHT && lamp->type != GEO_LAMP_FLOOD &&
+                   lamp->mount != GEO_MOUNT_SUSPENDED && !lamp->body_heads;
+    return bollard ? fmin(params->lumens, CITY_BOLLARD_LUMENS) : params->lumens;
+}
+
 static lamp_fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
     lamp_fitting f = { .height = known(lamp->height, params->height),
                        .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
-    f.lumens = known(told_lumens(lamp), params->lumens);
+    f.lumens = known(told_lumens(lamp), assumed_lumens(lamp, params));
     f.watts = known(lamp->watts, known(f.ruled.file_watts, NAN));
     if (lamp->type == GEO_LAMP_FLOOD)
         f.kind = FITTING_FLOOD;

@@ -40,7 +40,8 @@ static city_profile_kind profile_kind(const builder *b) {
     if (f->kind == FITTING_FLOOD)
         return CITY_PROFILE_FLOOD;
     if (f->kind == FITTING_SPHERE)
-        return f->height < 1.5 && !b->of.lamp->body_heads ? CITY_PROFILE_BOLLARD : CITY_PROFILE_POST_TOP;
+        return f->height < CITY_BOLLARD_HEIGHT && !b->of.lamp->body_heads ? CITY_PROFILE_BOLLARD
+                                                                          : CITY_PROFILE_POST_TOP;
     return b->of.placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
 }
 

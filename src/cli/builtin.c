@@ -35,7 +35,7 @@ static const struct {
     const char *option, *what, *unit;
 } lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
     [NOC_LAMP_HEIGHT] = { "lamp-height", "height", "m" },
-    [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each" },
+    [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each, 500 at most below 1.5 m" },
     [NOC_LAMP_COLOUR] = { "lamp-kelvin", "colour", "K" },
 };
 

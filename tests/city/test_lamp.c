@@ -155,7 +155,14 @@ static void test_flux(void **state) {
     l.direction = 90;
     l.lumens = 20000;
     assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
-    static const double expected[] = { 5000, 1200, 5500, 5500, 5500, 20000 };
+    l = lamp_at(80, 0);
+    l.height = 0.9;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1); /* a bollard */
+    l = lamp_at(100, 0);
+    l.height = 0.9;
+    l.lumens = 2400;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1); /* that tells its flux */
+    static const double expected[] = { 5000, 1200, 5500, 5500, 5500, 20000, CITY_BOLLARD_LUMENS, 2400 };
     assert_int_equal(scene->lights.len, NOC_COUNT(expected));
     for (size_t i = 0; i < scene->lights.len; i++)
         assert_float_equal(flux(&scene->lights.data[i]) / expected[i], 1, 1e-4);

@@ -395,7 +395,8 @@ run render "$gml" right.csv $view -o s.exr
 test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr &&
     grep -aq 'features-repaired' s.exr
 result $? "the right way round they light the city, and an EXR tells how many"
-assumed='2 without height: 6 m (--lamp-height), 2 without flux: 5000 lm each (--lamp-lumens), 2 without colour: 3000 K'
+assumed='2 without height: 6 m (--lamp-height), '
+assumed=$assumed'2 without flux: 5000 lm each, 500 at most below 1.5 m (--lamp-lumens), 2 without colour: 3000 K'
 grep -q "assumed  *$assumed" out &&
     grep -aq 'lamps-colour-assumed' s.exr
 result $? "what they do not tell, and what is taken for it, is told"
