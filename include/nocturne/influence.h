@@ -112,6 +112,8 @@ NOC_API void noc_region_destroy(noc_region *region); /* NULL is allowed */
 /* Adds parts, which are copied. NOC_ERR_ARGUMENT after reporting one that is not finite, whose normal is no unit
  * vector or whose weight is not above 0; then none of them is added. */
 NOC_API noc_status noc_region_add(noc_region *region, const noc_patch *patches, size_t count);
+/* Counts places that are no part of the region because something stands on the ground there. NULL: nothing is done. */
+NOC_API void noc_region_leave_out(noc_region *region, size_t count);
 
 /* Adds all triangles of the object of that id that are of these classes (1u << noc_class each; 0: all but closures and
  * ground surfaces), as they face outwards, by their area. What lies on the ground faces up. Where a window's pane lies
@@ -150,6 +152,7 @@ typedef struct noc_region_info {
     double weight;    /* sum: m2 of a surface */
     double centre[3]; /* weighted mean, local metres */
     bool point;       /* it is a single point */
+    size_t left_out;  /* places that noc_region_leave_out counted: something stands on the ground there */
 } noc_region_info;
 NOC_API void noc_region_get_info(const noc_region *region, noc_region_info *info);
 /* Its part of that index, below noc_region_info.patches; false: there is none. */

@@ -311,7 +311,8 @@ NOC_API noc_status noc_view_cast(noc_view *view, const noc_ray *rays, size_t cou
 /* The ground at those places, local metres, as it is seen from above: the surface there of one of these classes
  * (1u << noc_class each), through trees, lamps and the like, but not through buildings. Without one, hits[i].hit is
  * false; so it is where something stands on the ground (it is inside of a body) or covers it lower than 2.5 m over it,
- * as a car does, or is steeper than 60 degrees. Otherwise as noc_view_cast. */
+ * as a car does, or is steeper than 60 degrees. Where only what stands or lies there forbids it, the hit's material is
+ * that of the ground (else -1), and its place is the ground's. Otherwise as noc_view_cast. */
 NOC_API noc_status noc_view_cast_down(noc_view *view, const double (*xy)[2], size_t count, uint32_t classes,
                                       noc_hit *hits);
 

@@ -129,6 +129,7 @@ noc_status ask_add_ground(const asked *a, ask_cells *cells, uint32_t classes, si
     double(*xy)[2] = noc_alloc(CHUNK * sizeof(*xy));
     noc_hit *hits = noc_alloc(CHUNK * sizeof(*hits));
     noc_status status = xy && hits ? NOC_OK : noc_no_memory(a->log, "region");
+    size_t covered = 0;
     *found = 0;
     if (cells->keys.len)
         qsort(cells->keys.data, cells->keys.len, sizeof(uint64_t), by_key);
@@ -139,13 +140,17 @@ noc_status ask_add_ground(const asked *a, ask_cells *cells, uint32_t classes, si
                 place_of(cells->keys.data[i], cells->step, xy[n++]);
         status = noc_view_cast_down(a->view, xy, n, classes, hits);
         for (size_t k = 0; k < n && !status; k++) {
-            if (!hits[k].hit)
+            if (!hits[k].hit) {
+                covered += hits[k].material >= 0;
                 continue;
+            }
             noc_patch p = noc_hit_patch(&hits[k], cells->step * cells->step, NULL, NULL);
             status = noc_region_add(a->to, &p, 1);
             ++*found;
         }
     }
+    if (*found)
+        noc_region_leave_out(a->to, covered);
     free(xy);
     free(hits);
     return status;

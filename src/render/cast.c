@@ -35,6 +35,9 @@ enum { THROUGH = 8, DOWN_CHUNK = 4096 }; /* surfaces that a ray goes through; ra
 
 #define COVERS 2.5 /* m: what is lower over the ground covers it */
 #define LEVEL 0.5  /* cosine of 60 degrees: what is steeper is the side of something */
+#define OVER 0.05  /* m over the ground: rays to the sides, which are so long: trunks and poles are narrower */
+#define WIDE 3.0
+enum { SIDES = 5 };
 
 /* Rays that go down, which of the places they are for, and what they have gone through. */
 typedef struct down_rays {
@@ -43,6 +46,8 @@ typedef struct down_rays {
     size_t of[DOWN_CHUNK];
     int inside[DOWN_CHUNK];    /* bodies that it has entered and not left */
     double lowest[DOWN_CHUNK]; /* of those surfaces */
+    size_t under[DOWN_CHUNK];  /* places of ground that lies under something */
+    size_t under_count;
 } down_rays;
 
 /* Behind that surface; ray i becomes ray `to`. */
@@ -55,10 +60,12 @@ static void go_through(down_rays *d, size_t i, size_t to) {
     d->lowest[to] = h->place[2];
 }
 
-static bool is_open_ground(const down_rays *d, size_t i, uint32_t classes) {
-    const noc_hit *h = &d->hit[i];
-    return h->hit && classes >> h->cls & 1 && h->normal[2] > LEVEL && d->inside[i] <= 0 &&
-           d->lowest[i] > h->place[2] + COVERS;
+static bool is_ground(const noc_hit *h, uint32_t classes) {
+    return h->hit && classes >> h->cls & 1 && h->normal[2] > LEVEL;
+}
+
+static bool is_open(const down_rays *d, size_t i) {
+    return d->inside[i] <= 0 && d->lowest[i] > d->hit[i].place[2] + COVERS;
 }
 
 static noc_status cast_down(noc_view *v, down_rays *d, size_t count, uint32_t classes, noc_hit *hits) {
@@ -71,10 +78,38 @@ static noc_status cast_down(noc_view *v, down_rays *d, size_t count, uint32_t cl
             const noc_hit *h = &d->hit[i];
             if (h->hit && (LOOKED_THROUGH >> h->cls & 1 || h->light >= 0))
                 go_through(d, i, left++);
-            else if (is_open_ground(d, i, classes))
+            else if (is_ground(h, classes)) {
                 hits[d->of[i]] = *h;
+                hits[d->of[i]].hit = is_open(d, i);
+                if (is_open(d, i) && isfinite(d->lowest[i]))
+                    d->under[d->under_count++] = d->of[i];
+            }
         }
         count = left;
+    }
+    return NOC_OK;
+}
+
+/* A trunk or a pole may have no lid, and its top lie in what it carries: then rays down do not enter it. What stands
+ * there is known by all rays to the sides meeting it from within. */
+static noc_status leave_out_insides(noc_view *v, down_rays *d, noc_hit *hits) {
+    for (size_t from = 0; from < d->under_count;) {
+        size_t n = NOC_MIN(d->under_count - from, (size_t)DOWN_CHUNK / SIDES);
+        for (size_t i = 0; i < n * SIDES; i++) {
+            const double *p = hits[d->under[from + i / SIDES]].place;
+            double angle = 0.37 + 2 * M_PI * (double)(i % SIDES) / SIDES;
+            d->ray[i] = (noc_ray){ { p[0], p[1], p[2] + OVER }, { cos(angle), sin(angle), 0 }, WIDE };
+        }
+        noc_status status = noc_view_cast(v, d->ray, n * SIDES, d->hit);
+        for (size_t i = 0; i < n && !status; i++) {
+            bool inside = true;
+            for (size_t k = i * SIDES; k < (i + 1) * SIDES; k++)
+                inside = inside && d->hit[k].hit && !d->hit[k].front && LOOKED_THROUGH >> d->hit[k].cls & 1;
+            hits[d->under[from + i]].hit = !inside;
+        }
+        if (status)
+            return status;
+        from += n;
     }
     return NOC_OK;
 }
@@ -98,7 +133,9 @@ noc_status noc_view_cast_down(noc_view *v, const double (*xy)[2], size_t count, 
             d->lowest[n] = INFINITY;
             d->ray[n] = (noc_ray){ { xy[i][0], xy[i][1], info.bounds_max[2] + 1 }, { 0, 0, -1 }, INFINITY };
         }
+        d->under_count = 0;
         status = cast_down(v, d, n, classes, hits);
+        status = status ? status : leave_out_insides(v, d, hits);
     }
     free(d);
     return status;

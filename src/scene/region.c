@@ -44,6 +44,11 @@ noc_status noc_region_add(noc_region *r, const noc_patch *patches, size_t count)
     return array_append(&r->patches, patches, count) ? NOC_OK : noc_no_memory(r->log, "region");
 }
 
+void noc_region_leave_out(noc_region *r, size_t count) {
+    if (r)
+        r->left_out += count;
+}
+
 static void middle(const noc_patch *p, double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = p->p[k] + ((double)p->u[k] + p->v[k]) / 3;
@@ -56,6 +61,7 @@ void noc_region_get_info(const noc_region *r, noc_region_info *info) {
     if (!r)
         return;
     info->patches = r->patches.len;
+    info->left_out = r->left_out;
     info->point = r->patches.len == 1 && noc_patch_is_point(&r->patches.data[0]);
     for (size_t i = 0; i < r->patches.len; i++) {
         const noc_patch *p = &r->patches.data[i];

@@ -8,6 +8,7 @@
 struct noc_region {
     noc_log *log;
     NOC_ARRAY(noc_patch) patches;
+    size_t left_out; /* places where something stands */
 };
 
 static inline bool noc_patch_is_point(const noc_patch *p) {

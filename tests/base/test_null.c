@@ -331,6 +331,7 @@ static noc_camera camera;
     P(noc_region_destroy(noc_region_create(NULL)), true)                                                               \
     P(noc_region_destroy(NULL), true)                                                                                  \
     P(0, noc_region_add(NULL, NULL, 0) == NOC_ERR_ARGUMENT)                                                            \
+    P(noc_region_leave_out(NULL, 1), true)                                                                             \
     P(noc_region_get_info(NULL, &(noc_region_info){ 0 }), true)                                                        \
     P(noc_region_get_info(NULL, NULL), true)                                                                           \
     P(0, noc_region_outline(NULL, NULL, 4) == 0)                                                                       \
