@@ -119,8 +119,9 @@ NOC_API noc_status noc_raster_write(const noc_raster *raster, const char *path, 
 /* What a set of readings says: of pixels of a raster, or points of a region. */
 typedef struct noc_lux_figures {
     size_t readings;
-    double least, mean, most; /* the mean weighs each reading by its share */
-    double uniformity;        /* Uo: least / mean; NaN where the mean is 0 */
+    double least, mean, most; /* the mean weighs each reading by its share. Of noisy readings least is too low, and most
+                                 too high: noc_measure_least */
+    double uniformity;        /* least / mean, too low as it is; NaN where the mean is 0 */
     double low, median, high; /* 5, 50 and 95 % of the readings are at most that */
 } noc_lux_figures;
 
@@ -128,6 +129,26 @@ typedef struct noc_lux_figures {
  * NOC_ERR_MEMORY. */
 NOC_API noc_status noc_lux_figures_of(const float *lux, const float *share, size_t count, noc_lux_figures *out,
                                       noc_log *log);
+
+/* The least illuminance of a list of meters. The least of noisy readings is too low: it is chosen by its noise. */
+typedef struct noc_lux_least {
+    size_t meter;      /* the one that is chosen */
+    double lux, error; /* what it reads, by samples that had no part in the choice, and its standard error */
+    double low, high;  /* lx: the least of all lies between, by three standard errors of each that may be it */
+    size_t candidates; /* meters that may be the least, by the same. 1: its place is resolved */
+    uint32_t samples;  /* of lux. A lux of 0 with error 0: so many found no light, which is not proof of none */
+    double uniformity; /* Uo: lux / mean; NaN where the mean is 0 */
+    double uniformity_error;
+} noc_lux_least;
+
+/* Chooses the least of meters that noc_measure_points has read, by their readings, and its info: those that may be it
+ * are measured again, each time fewer of them by more new samples, until one is left, or they are known to lie within
+ * params.error of each other, or five times. Then it is measured by samples of its own. So lux is unbiased for that
+ * meter; where candidates are left, the least may be another's, and lower: `low`. It and the mean are independent.
+ * NOC_ERR_ARGUMENT where no meter has been read; otherwise as noc_measure_points. */
+NOC_API noc_status noc_measure_least(noc_view *view, const noc_meter *meters, size_t count, const noc_reading *readings,
+                                     const noc_measure_info *info, const noc_measure_params *params,
+                                     const noc_progress *progress, noc_lux_least *out);
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,9 @@ typedef struct told {
     double area;      /* m2; 0: it has none */
     noc_lux_figures figures;
     noc_measure_info info;
+    const noc_lux_least *least; /* NULL: its figures have the least reading alone */
+    double least_at[2];         /* in the scene's CRS */
+    size_t left_out;            /* places where something stands on the ground */
 } told;
 
 static void json_figure(const char *name, double v) {
@@ -19,7 +22,9 @@ static void json_figure(const char *name, double v) {
 }
 
 static void print_json(measure_job *job, const told *t) {
+    static const noc_lux_least none = { 0, NAN, NAN, NAN, NAN, 0, 0, NAN, NAN };
     const noc_lux_figures *f = &t->figures;
+    const noc_lux_least *l = t->least ? t->least : &none;
     const struct {
         const char *name;
         double value;
@@ -27,9 +32,18 @@ static void print_json(measure_job *job, const told *t) {
                  { "area", t->area > 0 ? t->area : NAN },
                  { "mean", f->mean },
                  { "mean_error", t->info.mean_error },
-                 { "minimum", f->least },
+                 { "minimum", l->lux },
+                 { "minimum_error", l->error },
+                 { "minimum_low", l->low },
+                 { "minimum_high", l->high },
+                 { "minimum_candidates", t->least ? (double)l->candidates : NAN },
+                 { "minimum_x", t->least ? t->least_at[0] : NAN },
+                 { "minimum_y", t->least ? t->least_at[1] : NAN },
+                 { "least_reading", f->least },
                  { "maximum", f->most },
-                 { "uniformity", f->uniformity },
+                 { "uniformity", l->uniformity },
+                 { "uniformity_error", l->uniformity_error },
+                 { "left_out", t->least ? (double)t->left_out : NAN },
                  { "percentile_5", f->low },
                  { "median", f->median },
                  { "percentile_95", f->high },
@@ -42,10 +56,33 @@ static void print_json(measure_job *job, const told *t) {
     cli_json_text(stdout, t->what);
     printf(",\n  \"crs\": ");
     cli_json_text(stdout, job->site.info.given_crs);
+    if (t->least)
+        printf(",\n  \"minimum_resolved\": %s", l->candidates == 1 ? "true" : "false");
     printf(",\n  \"windows_counted\": %s", job->args->count_windows ? "true" : "false");
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         json_figure(rows[i].name, rows[i].value);
     printf("}");
+}
+
+static void print_least(const told *t) {
+    const noc_lux_least *l = t->least;
+    char count[32];
+    if (!l) {
+        printf("  minimum     %.4g lx of single readings, too low by their noise: --region has one with its error\n",
+               t->figures.least);
+        return;
+    }
+    printf("  minimum     %.4g lx ± %.2g", l->lux, l->error);
+    if (l->candidates == 1)
+        printf(" at %.10g %.10g\n", t->least_at[0], t->least_at[1]);
+    else
+        printf(", between %.4g and %.4g lx: its place is open, %s points may have it\n", l->low, l->high,
+               noc_text_count(count, l->candidates));
+    if (l->lux == 0 && l->error == 0)
+        printf("              no light was found there in %u samples, which is not proof that there is none\n",
+               l->samples);
+    if (isfinite(l->uniformity))
+        printf("  Uo          %.3g ± %.2g, minimum over mean\n", l->uniformity, l->uniformity_error);
 }
 
 static void print_text(measure_job *job, const told *t) {
@@ -57,14 +94,14 @@ static void print_text(measure_job *job, const told *t) {
     printf(" in %s\n", noc_text_seconds(time, t->info.seconds));
     if (f->readings) {
         printf("  mean        %.4g lx ± %.2g\n", f->mean, t->info.mean_error);
-        printf("  minimum     %.4g lx\n", f->least);
-        printf("  maximum     %.4g lx\n", f->most);
-        if (isfinite(f->uniformity))
-            printf("  Uo          %.3f, minimum over mean\n", f->uniformity);
+        print_least(t);
+        printf("  maximum     %.4g lx, of single readings\n", f->most);
         printf("  percentiles %.4g lx (5 %%), %.4g lx (50 %%), %.4g lx (95 %%)\n", f->low, f->median, f->high);
         printf("  error       %.2g %% of a reading (median); %s over %.3g %%\n", 100 * t->info.error,
                noc_text_count(count, t->info.short_of_it), 100 * job->params.error);
     }
+    if (t->left_out)
+        printf("  left out    %s points: something stands on the ground there\n", noc_text_count(count, t->left_out));
     if (job->site.info.maintenance != 1)
         printf("  lamps give %g of their flux (--maintenance); meshes that shine, windows and cars all of theirs\n",
                job->site.info.maintenance);
@@ -106,21 +143,40 @@ static noc_status find_meters(measure_job *job, const char *text, noc_meter **me
     return NOC_OK;
 }
 
+static noc_status figures_of(measure_job *job, const noc_meter *meters, size_t count, noc_reading *readings, float *lux,
+                             told *t, noc_lux_least *least) {
+    noc_view *view = job->site.view;
+    noc_status status = noc_measure_points(view, meters, count, &job->params, &job->progress, readings, &t->info);
+    for (size_t i = 0; i < count; i++)
+        lux[i] = (float)readings[i].lux;
+    status = status ? status : noc_lux_figures_of(lux, NULL, count, &t->figures, job->site.log);
+    status = status ? status
+                    : noc_measure_least(view, meters, count, readings, &t->info, &job->params, &job->progress, least);
+    cli_progress_clear();
+    if (status)
+        return status;
+    double at[3];
+    memcpy(at, meters[least->meter].place, sizeof(at));
+    if (*job->site.info.given_crs)
+        status = noc_scene_from_local(job->site.scene, NULL, at);
+    memcpy(t->least_at, at, sizeof(t->least_at));
+    t->least = least;
+    return status;
+}
+
 static noc_status measure_region(measure_job *job, const char *text) {
     noc_meter *meters = NULL;
     noc_region_info info;
+    noc_lux_least least;
     told t = { .what = text };
     noc_status status = find_meters(job, text, &meters, &info);
     if (status)
         return status;
     noc_reading *readings = cli_alloc(info.patches * sizeof(*readings));
     float *lux = cli_alloc(info.patches * sizeof(*lux));
-    status = noc_measure_points(job->site.view, meters, info.patches, &job->params, &job->progress, readings, &t.info);
-    cli_progress_clear();
-    for (size_t i = 0; i < info.patches; i++)
-        lux[i] = (float)readings[i].lux;
-    status = status ? status : noc_lux_figures_of(lux, NULL, info.patches, &t.figures, job->site.log);
+    status = figures_of(job, meters, info.patches, readings, lux, &t, &least);
     t.area = strncmp(text, "street:", 7) && strncmp(text, "polygon:", 8) ? 0 : info.weight;
+    t.left_out = info.left_out;
     if (!status)
         tell(job, &t);
     free(lux);

@@ -20,7 +20,7 @@ typedef struct meter_block {
 
 static double length(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
-static noc_status check_meters(const noc_meter *meters, size_t count, noc_log *log) {
+noc_status meters_check(const noc_meter *meters, size_t count, noc_log *log) {
     for (size_t i = 0; i < count; i++) {
         const noc_meter *m = &meters[i];
         bool turned = m->response == NOC_RESPONSE_PLANE || m->response == NOC_RESPONSE_SEMICYLINDER;
@@ -132,26 +132,29 @@ static noc_status read_block(measuring *m, meter_block *b, noc_reading *readings
     return status;
 }
 
+noc_status measure_meters(measuring *m, const noc_meter *meters, size_t count, uint32_t seed, noc_reading *readings) {
+    meter_block *b = noc_alloc(sizeof(*b));
+    noc_status status = b ? NOC_OK : noc_no_memory(m->view->log, "measure");
+    for (size_t done = 0; done < count && !status; done += b->count) {
+        b->by = m;
+        b->seed = seed;
+        fill(b, meters + done, count - done);
+        m->from = (double)done / (double)count;
+        m->to = (double)(done + b->count) / (double)count;
+        status = read_block(m, b, readings + done);
+    }
+    free(b);
+    return status;
+}
+
 noc_status noc_measure_points(noc_view *view, const noc_meter *meters, size_t count, const noc_measure_params *params,
                               const noc_progress *progress, noc_reading *readings, noc_measure_info *info) {
     if (!view || (count && (!meters || !readings)))
         return noc_null(view ? view->log : NULL, __func__);
     measuring m;
     noc_status status = measuring_begin(&m, view, params, progress);
-    meter_block *b = status ? NULL : noc_alloc(sizeof(*b));
-    if (!status && !b)
-        status = noc_no_memory(view->log, "measure");
-    status = status ? status : check_meters(meters, count, view->log);
-    uint32_t seed = m.render.seed;
-    for (size_t done = 0; done < count && !status; done += b->count) {
-        b->by = &m;
-        b->seed = seed;
-        fill(b, meters + done, count - done);
-        m.from = (double)done / (double)count;
-        m.to = (double)(done + b->count) / (double)count;
-        status = read_block(&m, b, readings + done);
-    }
-    free(b);
+    status = status ? status : meters_check(meters, count, view->log);
+    status = status ? status : measure_meters(&m, meters, count, m.render.seed, readings);
     measuring_end(&m, info);
     return status;
 }

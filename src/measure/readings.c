@@ -173,6 +173,8 @@ static void add_frame(measuring *m, block *b, const float *lux, scratch *s) {
 
 static bool well_known(const measuring *m, const block *b) {
     size_t readings = 0, few = 0;
+    if (m->whole)
+        return false;
     for (size_t k = 0; k < b->count; k++) {
         noc_reading r = reading_of(&b->tallies[k], b->frames);
         readings += r.samples > 0;

@@ -38,6 +38,7 @@ typedef struct measuring {
     noc_measure_params params;
     const noc_progress *progress; /* may be NULL */
     double from, to;              /* of the whole work: this block's share */
+    bool whole;                   /* all params.samples are taken: to stop at a small error is to look at samples */
     uint32_t material;            /* of all receivers */
     noc_receiver *receivers;      /* BLOCK_AREA */
     noc_measure_info info;
@@ -55,6 +56,11 @@ noc_status measure_block(measuring *m, block *b);
 noc_reading reading_of(const tally *t, uint32_t frames);
 /* Counts a reading that is handed out. */
 noc_status note_reading(measuring *m, const noc_reading *r);
+
+/* Reports a meter that has no place or faces nowhere. */
+noc_status meters_check(const noc_meter *meters, size_t count, noc_log *log);
+/* Reads meters that are in order, by samples of that seed. */
+noc_status measure_meters(measuring *m, const noc_meter *meters, size_t count, uint32_t seed, noc_reading *readings);
 
 noc_receiver meter_receiver(const measuring *m, const double place[3], const double normal[3]);
 /* Number i of a sequence over the unit square whose parts are evenly filled (R2, Roberts 2018), from a start by key. */

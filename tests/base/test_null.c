@@ -280,6 +280,7 @@ static noc_camera camera;
     P(0, noc_view_cast(view, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_view_cast_down(NULL, &(double[2]){ 0 }, 1, 0, &(noc_hit){ 0 }) == NOC_ERR_ARGUMENT)                       \
     P(0, noc_view_cast_down(view, NULL, 1, 0, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_measure_least(NULL, NULL, 0, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                           \
     P(0, noc_measure_points(NULL, NULL, 0, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                \
     P(0, noc_measure_points(view, NULL, 1, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                \
     P(0, noc_measure_raster(NULL, NULL, NULL, NULL, NULL) == NULL)                                                     \

@@ -34,8 +34,13 @@ near = lambda a, ea, b, eb: abs(a - b) <= 4 * (ea * ea + eb * eb) ** .5 + .01 * 
 assert near(street['mean'], street['mean_error'], who['lux'], who['lux_error']), (street, who['lux'])
 assert near(raster['mean'], raster['mean_error'], who['lux'], who['lux_error']), (raster, who['lux'])
 for j in raster, street:
-    assert 0 < j['minimum'] < j['percentile_5'] < j['median'] < j['percentile_95'] < j['maximum'], j
-    assert abs(j['uniformity'] - j['minimum'] / j['mean']) < 1e-9
+    assert 0 < j['least_reading'] < j['percentile_5'] < j['median'] < j['percentile_95'] < j['maximum'], j
+low, least, high = (street['minimum' + k] for k in ('_low', '', '_high'))
+assert low <= least + 3 * street['minimum_error'] and least - 3 * street['minimum_error'] <= high, street
+assert 0 < least < street['percentile_5'] and street['minimum_error'] > 0 and street['uniformity_error'] > 0, street
+assert abs(street['uniformity'] - least / street['mean']) < 1e-6
+assert street['minimum_resolved'] is (street['minimum_candidates'] == 1) and street['minimum_x'] > 1e3, street
+assert raster['minimum'] is None and raster['uniformity'] is None and 'minimum_resolved' not in raster, raster
 PY
     result $? "raster, street and nocturne influence agree"
 
@@ -94,6 +99,13 @@ result $? "normals of any length"
 printf '10 10 -0.3\n' | "$program" measure builtin:city -q --points - >out 2>err &&
     sed -n 2p out | grep -q ',8,"below the ground by 0.4 m"$'
 result $? "why a point is dark"
+
+# Regions tell the least with its error.
+run measure builtin:city -q --region "street:street 1"
+grep -Eq '^  minimum +[0-9.e-]+ lx ± [0-9.e-]+( at |, between )' out &&
+    grep -Eq '^  Uo +[0-9.e-]+ ± [0-9.e-]+, minimum over mean$' out &&
+    grep -Eq '^  left out +[0-9,]+ points: something stands on the ground there$' out
+result $? "the minimum has its error, and what is left out is counted"
 
 mean() {
     "$program" measure builtin:city -q --json --region "street:street 1" "$@" | sed -n 's/.*"mean": \([0-9.]*\),/\1/p'

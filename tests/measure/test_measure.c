@@ -229,6 +229,113 @@ static void figures_of_readings(void **state) {
     assert_true(f.readings == 0 && isnan(f.mean) && isnan(f.uniformity));
 }
 
+/* ---- the least ---- */
+
+/* A street's mile of bare lamps of many sizes, whose light at a place is a sum; each frame draws few of them. */
+enum { LAMPS = 400, PLACES = 1024, SEEDS = 60 };
+typedef struct avenue {
+    double at[LAMPS][3], candela[LAMPS];
+    noc_meter meters[PLACES];
+    double least, mean; /* of the places, by the sum */
+} avenue;
+
+static noc_scene *avenue_of(avenue *a) {
+    noc_scene *s = noc_scene_create(NULL);
+    int road =
+        noc_scene_add_material(s,
+                               &(noc_material){ .albedo = { .1f, .1f, .1f }, .roughness = 1, .cls = NOC_CLASS_ROAD });
+    uint32_t state = 1;
+    add_floor(s, road, 0, 0, 0, 200);
+    for (int i = 0; i < LAMPS; i++) {
+        double u[4];
+        for (int k = 0; k < 4; k++)
+            u[k] = (double)((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24;
+        a->candela[i] = 50 * pow(60, u[3]);
+        a->at[i][0] = 160 * u[0] - 80;
+        a->at[i][1] = 160 * u[1] - 80;
+        a->at[i][2] = 4 + 8 * u[2];
+        point_light(s, a->at[i][0], a->at[i][1], a->at[i][2], (float)a->candela[i]);
+    }
+    a->least = INFINITY;
+    a->mean = 0;
+    for (int m = 0; m < PLACES; m++) {
+        int patch = m / 256, x = patch % 2 * 40 + m % 16, y = patch / 2 * 40 + m / 16 % 16;
+        const double p[2] = { 0.7 * x - 20, 0.7 * y - 20 };
+        double lux = 0;
+        a->meters[m] = (noc_meter){ .place = { p[0], p[1], 0.001 }, .normal = { 0, 0, 1 } };
+        for (int i = 0; i < LAMPS; i++) {
+            double d[3] = { a->at[i][0] - p[0], a->at[i][1] - p[1], a->at[i][2] - 0.001 };
+            lux += a->candela[i] * d[2] / pow(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 1.5);
+        }
+        a->least = fmin(a->least, lux);
+        a->mean += lux / PLACES;
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+/* A figure over the seeds: its mean's distance from the truth in standard errors of the mean, and how many are within
+ * three stated ones. */
+static double off(const double *value, double want) {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < SEEDS; i++) {
+        sum += value[i] / SEEDS;
+        squares += value[i] * value[i] / SEEDS;
+    }
+    return (sum - want) / sqrt((squares - sum * sum) / (SEEDS - 1));
+}
+
+static int within(const double *value, const double *error, double want) {
+    int n = 0;
+    for (int i = 0; i < SEEDS; i++)
+        n += fabs(value[i] - want) <= 3 * error[i];
+    return n;
+}
+
+/* The least of noisy readings is that of their noise; that of noc_measure_least is the field's. */
+static void the_least_is_not_that_of_the_noise(void **state) {
+    (void)state;
+    static avenue a;
+    static noc_reading readings[PLACES];
+    double noisy[SEEDS], least[SEEDS], error[SEEDS], uo[SEEDS], uo_error[SEEDS];
+    int between = 0, resolved = 0;
+    noc_scene *s = avenue_of(&a);
+    noc_view *v = own_view(s, 2, NULL);
+    for (int seed = 0; seed < SEEDS; seed++) {
+        noc_render_params render;
+        noc_measure_params params = without_sky(&render);
+        noc_measure_info info;
+        noc_lux_least l;
+        render.seed = (uint32_t)seed;
+        render.draws = 1;
+        params.error = 1;
+        assert_int_equal(noc_measure_points(v, a.meters, PLACES, &params, NULL, readings, &info), NOC_OK);
+        params.error = 0.01;
+        assert_int_equal(noc_measure_least(v, a.meters, PLACES, readings, &info, &params, NULL, &l), NOC_OK);
+        noisy[seed] = INFINITY;
+        for (int i = 0; i < PLACES; i++)
+            noisy[seed] = fmin(noisy[seed], readings[i].lux);
+        least[seed] = l.lux;
+        error[seed] = l.error;
+        uo[seed] = l.uniformity;
+        uo_error[seed] = l.uniformity_error;
+        between += l.low <= a.least && a.least <= l.high;
+        resolved += l.candidates == 1;
+        assert_true(l.low <= l.high && l.candidates >= 1);
+    }
+    double want = a.least / a.mean;
+    print_message("# least %g lx, Uo %g: readings %.1f, least %+.2f, Uo %+.2f errors of their means off; within three: "
+                  "%d, %d; between: %d; resolved: %d of %d; last %g +- %g\n",
+                  a.least, want, off(noisy, a.least), off(least, a.least), off(uo, want), within(least, error, a.least),
+                  within(uo, uo_error, want), between, resolved, SEEDS, least[0], error[0]);
+    assert_true(off(noisy, a.least) < -10);
+    assert_true(fabs(off(least, a.least)) <= 3 && fabs(off(uo, want)) <= 3);
+    assert_true(within(least, error, a.least) * 20 >= SEEDS * 19 && within(uo, uo_error, want) * 20 >= SEEDS * 19);
+    assert_true(between * 20 >= SEEDS * 19);
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
 /* Four sides from z0 to z1, and a lid and a floor where it has them. */
 static void add_box(noc_scene *s, int material, double x, double half, double z0, double z1, bool lid, bool floor) {
     double w = 2 * half, h = z1 - z0, l = x - half, r = x + half;
@@ -411,6 +518,7 @@ int main(void) {
         cmocka_unit_test(errors_hold_on_dark_ground),
         cmocka_unit_test(cuts_and_threads_change_nothing),
         cmocka_unit_test(figures_of_readings),
+        cmocka_unit_test(the_least_is_not_that_of_the_noise),
         cmocka_unit_test(what_stands_there_is_left_out),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(it_can_be_stopped),
