@@ -72,9 +72,13 @@ echo 1,2,3 >>photo.csv
 run render $small --photo-points photo.csv -o q.png
 test $status = 1 && grep -q 'photo.csv:10: a row is px,py,x,y,z' err
 result $? "a row that is none is told" "$(cat err)"
+mkfifo pipe
+run render $small --photo-points pipe -o q.png
+test $status = 1 && grep -q 'pipe: it cannot be opened: not a regular file' err
+result $? "nobody is waited for who would write a pipe" "$(cat err)"
 run render $small --photo-points photo.csv --eye 1,2,3 --target 0,0,0 -o q.png
 test $status = 2 && grep -q 'exclude each other' err; result $? "a photograph and an eye are two cameras"
-rm photo.csv p.png
+rm photo.csv p.png pipe
 
 run render $small -o a.exr
 test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr &&

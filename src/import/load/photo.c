@@ -2,8 +2,12 @@
 #include "import/import.h"
 #include "scene/scene.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <nocturne/text.h>
 #include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { MOST = 10000, LINE = 512 };
 
@@ -62,6 +66,21 @@ static noc_status read_rows(photo *p, FILE *file) {
     return status;
 }
 
+/* Waits for nobody who would write it, as of a pipe. */
+static noc_status open_table(const photo *p, FILE **file) {
+    struct stat st;
+    int fd = open(p->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool regular = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode);
+    *file = regular ? fdopen(fd, "r") : NULL;
+    if (*file)
+        return NOC_OK;
+    noc_status status = noc_error(p->scene->log, NOC_ERR_IO, "%s: it cannot be opened: %s", p->path,
+                                  fd < 0 || regular ? strerror(errno) : "not a regular file");
+    if (fd >= 0)
+        close(fd);
+    return status;
+}
+
 noc_status noc_scene_photo_camera(const noc_scene *scene, const char *path, const char *crs, noc_camera *camera,
                                   noc_photo_info *info) {
     if (!scene || !path || !camera)
@@ -70,8 +89,9 @@ noc_status noc_scene_photo_camera(const noc_scene *scene, const char *path, cons
     p.points = noc_alloc(MOST * sizeof(*p.points));
     if (!p.points)
         return noc_no_memory(scene->log, "camera of a photograph");
-    FILE *file = fopen(path, "r");
-    noc_status status = file ? read_rows(&p, file) : noc_error(scene->log, NOC_ERR_IO, "%s: it cannot be opened", path);
+    FILE *file;
+    noc_status status = open_table(&p, &file);
+    status = status ? status : read_rows(&p, file);
     if (file)
         fclose(file);
     if (!status)
