@@ -25,8 +25,10 @@
 #define OWN_OTHER 0.25  /* the same of one that faces it, across the two carriageways */
 #define OWN_STREET 2.0  /* spacings off mapped lamps of its street: what is lit more sparsely is not lit there */
 #define MOST_LAMPS 200000
-#define MOST_NEAR 4096 /* mapped lamps in a square of the spacing: there is no room for more */
-#define LONGEST 200e3  /* m of a way that gets lamps */
+#define MOST_NEAR 4096      /* mapped lamps in a square of the spacing: there is no room for more */
+#define LONGEST 200e3       /* m of a way that gets lamps */
+#define MANY_PIECES 1000    /* of roads near a place: no street map has more */
+#define MOST_LOOKS 50000000 /* at pieces beyond those: a second or two */
 
 enum {
     MOTOR_LIT = 1u << GEO_ROAD_PRIMARY | 1u << GEO_ROAD_SECONDARY | 1u << GEO_ROAD_TERTIARY | 1u << GEO_ROAD_MINOR |
@@ -62,8 +64,10 @@ typedef struct placing {
     NOC_ARRAY(city_road_lamp) found;
     NOC_ARRAY(way_order) ways; /* that are lit */
     road_streets streets;
-    uint32_t *mapped_of; /* of each mapped lamp its street */
-    size_t without;      /* of these, ways that are left without lamps */
+    uint32_t *mapped_of;       /* of each mapped lamp its street */
+    size_t without;            /* of these, ways that are left without lamps */
+    size_t looks;              /* at pieces where there are too many */
+    const road_piece *blocker; /* what was in the way of the last place */
 } placing;
 
 static uint64_t mix(uint64_t h) {
@@ -92,20 +96,29 @@ static bool elsewhere(const geo_road *road, const geo_road *other) {
            (other->bridge != road->bridge && other->cls == GEO_ROAD_RAIL);
 }
 
-/* Off other carriageways, so off the middle of junctions, and off railways. */
-static bool clear_of_roads(const placing *p, const geo_road *road, const double xy[2]) {
+/* Is a place on the carriageway of a piece, on its railway, or on a path that its lamps light? */
+static bool is_taken_by(const placing *p, const geo_road *road, const road_piece *piece, const double xy[2]) {
     bool path = road->cls == GEO_ROAD_PATH;
-    for (road_walk w = road_walk_start(p->roads, xy); road_walk_next(&w);) {
-        const geo_road *other = &p->roads->roads[w.piece->road];
-        double d = road_distance(w.piece, xy, NULL), half = geo_road_width(other) / 2;
-        if (elsewhere(road, other) && other != road)
-            continue;
-        if (other->cls == GEO_ROAD_RAIL ? d < RAIL_CLEAR : d < half + CLEAR && (path || other->cls != GEO_ROAD_PATH))
-            return false;
-        if (path && other->cls != GEO_ROAD_PATH && is_lit(p, other) && d < half + PATH_BESIDE)
-            return false;
-    }
-    return true;
+    const geo_road *other = &p->roads->roads[piece->road];
+    if (elsewhere(road, other) && other != road)
+        return false;
+    double d = road_distance(piece, xy, NULL), half = geo_road_width(other) / 2;
+    if (other->cls == GEO_ROAD_RAIL ? d < RAIL_CLEAR : d < half + CLEAR && (path || other->cls != GEO_ROAD_PATH))
+        return true;
+    return path && other->cls != GEO_ROAD_PATH && is_lit(p, other) && d < half + PATH_BESIDE;
+}
+
+/* Off other carriageways, so off the middle of junctions, and off railways. What was in the way last is asked first. */
+static bool clear_of_roads(placing *p, const geo_road *road, const double xy[2]) {
+    size_t seen = 0;
+    bool taken = p->blocker && is_taken_by(p, road, p->blocker, xy);
+    for (road_walk w = road_walk_start(p->roads, xy); !taken && road_walk_next(&w); seen++)
+        if (is_taken_by(p, road, w.piece, xy)) {
+            p->blocker = w.piece;
+            taken = true;
+        }
+    p->looks += seen > MANY_PIECES ? seen - MANY_PIECES : 0;
+    return !taken;
 }
 
 static bool on_water(const placing *p, const double xy[2]) {
@@ -135,7 +148,7 @@ static bool is_mapped(const placing *p, const geo_road *road, const double xy[2]
     return false;
 }
 
-static bool may_stand(const placing *p, const geo_road *road, const double xy[2]) {
+static bool may_stand(placing *p, const geo_road *road, const double xy[2]) {
     double z;
     if (!(fabs(xy[0]) < ROADS_FARTHEST && fabs(xy[1]) < ROADS_FARTHEST))
         return false;
@@ -230,7 +243,7 @@ static void along_way(placing *p, const geo_road *road) {
     bool opposite = width > 1.5 * height, turns = !opposite && width > height;
     int side = side_of(road);
     for (uint32_t i = 0; i < count; i++) {
-        p->too_many = p->too_many || p->found.len >= MOST_LAMPS;
+        p->too_many = p->too_many || p->found.len >= MOST_LAMPS || p->looks > MOST_LOOKS;
         if (p->too_many)
             return;
         double along = (i + .5) * length / count;
@@ -354,7 +367,12 @@ noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city
     *streets = p.no_memory || p.cancelled ? 0 : road_streets_count(roads, &p.streets, p.found.data, p.found.len);
     road_streets_free(&p.streets);
     free(p.mapped_of);
-    if (p.too_many && !p.no_memory && !p.cancelled)
+    if (p.looks > MOST_LOOKS && !p.no_memory && !p.cancelled)
+        noc_warn(scene->log,
+                 "%zu lit roads of maps have no lamps, or not all: too many roads lie over one another there. --bbox "
+                 "takes less of the maps",
+                 p.without);
+    else if (p.too_many && !p.no_memory && !p.cancelled)
         noc_warn(scene->log,
                  "%zu lit roads of maps have no lamps, or not all: %d are the most. --bbox takes less of the "
                  "maps",

@@ -412,6 +412,48 @@ static void on_message(void *user, noc_log_level level, const char *text) {
                        strstr(text, "lit roads of maps have no lamps, or not all: 200000 are the most") != NULL;
 }
 
+static void on_crowd(void *user, noc_log_level level, const char *text) {
+    *(size_t *)user += level == NOC_LOG_WARN && strstr(text, "too many roads lie over one another there") != NULL;
+}
+
+/* Nine thousand wide roads across one square, with very many pieces near each place: the search ends, and says so. A
+ * tenth of them is searched to its end. */
+static void crowded(void **state) {
+    enum { ROADS = 9000 };
+    size_t warned = 0;
+    geo_road *roads = calloc(ROADS, sizeof(*roads));
+    double(*xyz)[6] = calloc(ROADS, sizeof(*xyz));
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_crowd, .user = &warned });
+    noc_scene *scene = noc_scene_create(log);
+    for (int i = 0; i < ROADS; i++) {
+        double angle = M_PI * fmod(i * 0.6180339887, 1), x = 100 * fmod(i * 0.7548776662, 1) - 50,
+               y = 100 * fmod(i * 0.5698402910, 1) - 50, dx = 150 * cos(angle), dy = 150 * sin(angle);
+        memcpy(xyz[i], (double[]){ x - dx, y - dy, NAN, x + dx, y + dy, NAN }, sizeof(xyz[i]));
+        roads[i] = (geo_road){ .id = "way/1",
+                               .name = "",
+                               .cls = GEO_ROAD_PRIMARY,
+                               .lit = GEO_LIT_YES,
+                               .width = NAN,
+                               .speed = NAN,
+                               .point_count = 2,
+                               .xyz = xyz[i] };
+    }
+    for (size_t count = ROADS / 10; count <= ROADS; count *= 10) {
+        city_roads *of = city_roads_create(roads, count);
+        city_road_lamp *lamps;
+        size_t found, streets;
+        assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found, &streets),
+                         NOC_OK);
+        assert_int_equal(warned, count == ROADS);
+        free(lamps);
+        city_roads_destroy(of);
+    }
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    free(xyz);
+    free(roads);
+}
+
 static double sum_of(const city_road_lamp *lamps, size_t count) {
     double sum = 0;
     for (size_t i = 0; i < count; i++)
@@ -473,7 +515,7 @@ int main(void) {
         cmocka_unit_test(dual_carriageway), cmocka_unit_test(half_mapped), cmocka_unit_test(path_beside),
         cmocka_unit_test(buildings),        cmocka_unit_test(stable),      cmocka_unit_test(asked),
         cmocka_unit_test(streets),          cmocka_unit_test(odd),         cmocka_unit_test(facing),
-        cmocka_unit_test(too_many),
+        cmocka_unit_test(too_many),         cmocka_unit_test(crowded),
     };
     return cmocka_run_group_tests_name("city/road_lamps", tests, NULL, NULL);
 }
