@@ -5,7 +5,8 @@
 lamp_model
 unset OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE PMI_RANK PMI_SIZE JOB_COMPLETION_INDEX NOCTURNE_PARTS
 for name in $(env | sed -n 's/^\(SLURM_[A-Z_]*\)=.*/\1/p'); do unset "$name"; done
-sums() { (cd "$1" && sha256sum -- * 2>&1); }
+# sums FOLDER: of its pictures; there is a film as well where ffmpeg is installed
+sums() { (cd "$1" && sha256sum -- *.png 2>&1); }
 # pictures FOLDER ARGUMENT...: the arguments that make nine pictures there
 pictures() { echo "render lamp.obj --size 24x16 --animate --frames 9 --samples 2 -v -o $1/%02d.png"; }
 # made FILE...: names of pictures that runs with -v made, sorted
