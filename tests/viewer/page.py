@@ -90,11 +90,14 @@ class Page(Opened):
         page = self.page
         press_choice(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        page.wait("!document.getElementById('legend').inert")
         before = look(page)
         page.evaluate("document.querySelector('#legend .handle.high').focus()")
         for _ in range(6):
             page.key('ArrowLeft')
+            assert page.evaluate("document.activeElement?.matches('#legend .handle.high')")
         differs(page, before, 2)
+        page.wait("!document.getElementById('legend').inert")
         page.press('#isolines')
         page.evaluate("document.getElementById('isolines').select()")
         page.type('7.5, 12,40')
@@ -122,6 +125,7 @@ class Page(Opened):
 
         press_choice(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
+        page.wait("!document.getElementById('legend').inert")
         x, y = page.middle('#legend .band')
         under = page.evaluate(f"document.elementFromPoint({x}, {y}).closest('#stage') !== null")
         assert under, 'the legend takes clicks that are meant for the picture'

@@ -44,11 +44,12 @@ export class Legend {
         app.on('waiting', () => this.#wait());
     }
 
-    // That of a picture which is not what is pressed is dimmed with it, and sets nothing.
+    // That of a picture which is not what is pressed is dimmed with it, and sets nothing, unless a hand is on it: what
+    // it has set is what is waited for, and an inert element loses the focus, and what is typed.
     #wait() {
         const waits = this.app.waiting.has(this.pane);
         this.root.classList.toggle('waiting', waits);
-        this.root.inert = waits;
+        this.root.inert = waits && !this.root.contains(document.activeElement);
     }
 
     // The pane that is edited, where it shows numbers; -1: none has a legend. A difference has one of its own.
