@@ -87,7 +87,7 @@ MUTANTS = [
            "distance_km(given, other) > APART &&", "distance_km(given, other) < APART &&",
            ["cli-inputs"]),
     Mutant("feet", "lamps of a land of feet are judged as everywhere", "src/import/load/units.c",
-           "return &hangings[feet];", "return &hangings[feet && !source];",
+           "return &hangings[units_of_feet(in->lamp_given.source, in->lamp_given.xy)];", "return &hangings[0];",
            ["import-test_lamp_heights", "import-test_heights"]),
     Mutant("lamps-twice", "two files of the same lamps are not noticed", "src/import/load/doubles.c",
            "counts[best] >= FEWEST && 2 * counts[best] >= to - from",
