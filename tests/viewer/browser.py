@@ -196,20 +196,27 @@ class Page:
             if value:
                 return value
             if time.monotonic() > end:
-                raise Failure(f'in {limit} s it never was true: {expression}')
+                raise Failure(f'in {limit} s it never was true: {expression[:400]}')
             self.browser.listen(0.05)
 
-    def middle(self, selector):
-        """The middle of an element, CSS pixels, once it can be hit there."""
-        found = self.wait(f'''(() => {{
+    def middle(self, selector, hit=False):
+        """The middle of an element, CSS pixels, once it rests, and once it is what is hit there."""
+        return self.wait(f'''(async () => {{
             const all = [...document.querySelectorAll({json.dumps(selector)})].filter((one) => one.offsetParent !== null
                 || getComputedStyle(one).position === 'fixed');
             if (!all.length) return null;
             all[0].scrollIntoView({{ block: 'nearest', inline: 'nearest' }});
-            const box = all[0].getBoundingClientRect();
-            return [box.left + box.width / 2, box.top + box.height / 2];
+            const middle = () => {{
+                const box = all[0].getBoundingClientRect();
+                return [box.left + box.width / 2, box.top + box.height / 2];
+            }};
+            const before = middle();
+            await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+            const now = middle();
+            const met = document.elementFromPoint(...now);
+            const free = {json.dumps(not hit)} || all[0].contains(met) || met?.contains(all[0]);
+            return now.join() === before.join() && free ? now : null;
         }})()''')
-        return found
 
     def mouse(self, kind, x, y, button='left', buttons=0, clicks=1, wheel=0, shift=False):
         values = {'deltaX': 0, 'deltaY': wheel} if kind == 'mouseWheel' else {}
@@ -223,7 +230,7 @@ class Page:
 
     def press(self, selector):
         """Clicks an element as a hand does."""
-        self.click(*self.middle(selector))
+        self.click(*self.middle(selector, hit=True))
 
     def drag(self, x0, y0, x1, y1, steps=8, button='left', shift=False):
         held = {'left': 1, 'right': 2, 'middle': 4}[button]

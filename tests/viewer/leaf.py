@@ -105,6 +105,13 @@ def press_choice(page, name):
     page.evaluate(f"document.querySelector('[role=radio][data-name=\"{name}\"]').click()")
 
 
+def shows(page, name):
+    """Presses what is shown, and waits until the first picture shows it."""
+    press_choice(page, name)
+    page.wait(f"viewer.state.panes[0].values.show === '{name}' && viewer.stats[0]?.show === '{name}' && "
+              "!viewer.waiting.size")
+
+
 def press_text(page, text):
     """Presses the button of the panels that says this."""
     page.wait(f"""(() => {{

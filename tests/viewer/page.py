@@ -6,7 +6,7 @@ import re
 import browser
 import wire
 from leaf import (CITY, Opened, apart, blur, camera, choose, differs, direction, far, look, opened, press_choice,
-                  press_text, rests, run, state)
+                  press_text, rests, run, shows, state)
 
 
 class Page(Opened):
@@ -88,9 +88,8 @@ class Page(Opened):
 
     def test_has_legends(self):
         page = self.page
-        press_choice(page, 'depth')
+        shows(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
-        page.wait("!document.getElementById('legend').inert")
         before = look(page)
         page.evaluate("document.querySelector('#legend .handle.high').focus()")
         for _ in range(6):
@@ -123,9 +122,8 @@ class Page(Opened):
         def at():
             return page.evaluate(f'(({{ x, y }}) => [x, y])({legend})')
 
-        press_choice(page, 'depth')
+        shows(page, 'depth')
         page.wait("document.querySelectorAll('#legend .ticks span').length > 1")
-        page.wait("!document.getElementById('legend').inert")
         x, y = page.middle('#legend .band')
         under = page.evaluate(f"document.elementFromPoint({x}, {y}).closest('#stage') !== null")
         assert under, 'the legend takes clicks that are meant for the picture'

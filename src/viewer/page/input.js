@@ -60,6 +60,7 @@ export class Input extends Emitter {
         stage.addEventListener('pointermove', (event) => this.#drag(event));
         for (const kind of ['pointerup', 'pointercancel'])
             stage.addEventListener(kind, (event) => this.#release(event));
+        stage.addEventListener('dblclick', (event) => this.#twice(event));
         stage.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
         stage.addEventListener('contextmenu', (event) => event.preventDefault());
         document.addEventListener('keydown', (event) => this.#key(event, true));
@@ -150,9 +151,7 @@ export class Input extends Emitter {
     #clicked(hit) {
         if (!hit) return;
         if (this.#timer) {
-            clearTimeout(this.#timer);
-            this.#timer = 0;
-            this.emit('jump', hit);
+            this.#jump(hit);
             return;
         }
         this.#timer = setTimeout(() => {
@@ -161,6 +160,18 @@ export class Input extends Emitter {
         }, TWICE);
     }
     #timer = 0;
+
+    #jump(hit) {
+        clearTimeout(this.#timer);
+        this.#timer = 0;
+        this.emit('jump', hit);
+    }
+
+    // What the system takes for a double click is one, however late its second click is heard here.
+    #twice(event) {
+        const hit = this.panes.at(event.clientX, event.clientY);
+        if (hit && this.#timer) this.#jump(hit);
+    }
 
     // Where a key picks or goes to: under the pointer; the middle, where a dot is, without one.
     target() {
