@@ -6,11 +6,13 @@ import re
 import sys
 
 RESULT = re.compile(r"^(not )?ok\b\s*(\d*)\s*(.*)$")
+ASIDE = re.compile(r"^# ([\d.]+ s|(not )?ok - tests)$")  # times, and what cmocka says at the end
 PLAN = re.compile(r"^1\.\.(\d+)")
 
 
 def read_tap(text):
-    """-> ([(name, state, reason)], planned): TAP as cmocka and the shell tests print it."""
+    """-> ([(name, state, reason)], planned): TAP as cmocka and the shell tests print it. Of a failure the reason is the
+    last that is said of it."""
     tests, planned, why = [], None, ""
     for line in text.splitlines():
         plan, result = PLAN.match(line), RESULT.match(line)
@@ -28,6 +30,8 @@ def read_tap(text):
                 state = "skipped"
             tests.append((name, state, reason))
             why = ""
+        elif tests and tests[-1][1] == "failed" and line.startswith("# ") and not ASIDE.match(line):
+            tests[-1] = (tests[-1][0], "failed", line[2:302].strip())
     return tests, planned
 
 

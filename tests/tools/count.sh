@@ -30,7 +30,7 @@ program a OK '1..2\nok 1 - x\nok 2 - y\n# ok - tests\n'
 program b OK 'ok 1 - z\n1..1\n'
 expect "all pass" 0 "3 passed, 0 failed, 0 skipped"
 program a FAIL '1..2\nok 1 - x\nnot ok 2 - y\n# why\n# not ok - tests\n'
-expect "one fails" 1 "1 passed, 1 failed, 0 skipped" "failed: a y"
+expect "one fails" 1 "1 passed, 1 failed, 0 skipped" "failed: a y (why)"
 program a OK '1..2\n# skipped: shared/x is not here\nnot ok 1 # SKIP x\nok 2 - y\n'
 expect "cmocka skips" 0 "1 passed, 0 failed, 1 skipped" "skipped: a x (shared/x is not here)"
 program a OK 'ok 1 - x # SKIP no such device\nok 2 - y\n1..2\n'
