@@ -439,6 +439,14 @@ NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
 #define NOC_CONTENT_KEY 33
 NOC_API void noc_scene_content(const noc_scene *scene, char key[NOC_CONTENT_KEY]);
 
+/* Returns the name under which the load of the scene met the file that `path` names, by the same name, a link or any
+ * other; NULL where the scene is not made of it. The files of a scene are its inputs, all that these name, whether it
+ * was read or not (images, material libraries, buffers, parts of a Shapefile), and those of the parameters of the load.
+ * A built city is made of its own file alone. *by, which may be NULL, gets the file that names it, NULL where the
+ * caller of the load did. Both are valid as long as the scene. Call it before a file is written: a source that is
+ * replaced is lost to its owner. */
+NOC_API const char *noc_scene_find_source(const noc_scene *scene, const char *path, const char **by);
+
 /* Height of the highest ground (terrain, road, sidewalk, green, building ground) under or over (x, y), local metres.
  * Instances are no ground.
  * Returns false where there is none, and where there was no memory to look for it, which is reported. */

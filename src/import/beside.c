@@ -31,8 +31,12 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
                : "lies outside the folder of the file that names it (--allow-outside lets it)";
 }
 
+static char *path_of(const char *folder, const char *name) {
+    return noc_format("%s%s", *name == '/' ? "" : folder, name);
+}
+
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why) {
-    char *path = noc_format("%s%s", *name == '/' ? "" : folder, name);
+    char *path = path_of(folder, name);
     struct stat st;
     int fd = -1;
     *why = NULL;
@@ -52,8 +56,22 @@ FILE *import_open_named(const char *folder, const char *name, bool anywhere, siz
     return f;
 }
 
-void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most, size_t *size,
-                        const char **why) {
+bool import_note_named(const import_listener *listener, const char *folder, const char *name) {
+    struct stat st;
+    if (!listener || !listener->on_named)
+        return true;
+    char *path = path_of(folder, name);
+    if (path && !stat(path, &st) && S_ISREG(st.st_mode))
+        listener->on_named(listener->user, path);
+    free(path);
+    return path != NULL;
+}
+
+void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most,
+                        const import_listener *listener, size_t *size, const char **why) {
+    *why = NULL;
+    if (!import_note_named(listener, folder, name))
+        return NULL;
     FILE *f = import_open_named(folder, name, anywhere, size, why);
     void *data = NULL;
     if (f && *size > most) /* IMPORT_NAMED, for there is no other limit */

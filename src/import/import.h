@@ -57,7 +57,18 @@ size_t noc_stream_unread(const noc_stream *s);       /* other members of a zip t
 bool noc_stream_trailing(const noc_stream *s);
 void noc_stream_limit(noc_stream *s, const noc_import_params *params); /* the defaults' hold until it is called */
 import_budget *noc_stream_budget(noc_stream *s);                       /* what compressed data grows to is held to it */
-double noc_stream_progress(const noc_stream *s);                       /* share of the stored bytes consumed, 0..1 */
+/* Receives the path of each regular file that the stream's file names, whether it is read or not, so that no output
+ * replaces it. on_named is called by the reading thread; NULL: none. */
+typedef struct import_listener {
+    void (*on_named)(void *user, const char *path);
+    void *user;
+} import_listener;
+void noc_stream_listen(noc_stream *s, import_listener listener);
+const import_listener *noc_stream_listener(const noc_stream *s); /* valid as long as the stream */
+/* Passes a file that the stream's file names, from its folder on, to the listener. Returns false if memory is refused.
+ */
+bool noc_stream_note_named(const noc_stream *s, const char *name) NOC_MUST_USE;
+double noc_stream_progress(const noc_stream *s); /* share of the stored bytes consumed, 0..1 */
 
 /* x3d.c: a diffuse colour, which is a display's as other programs take it; a specular colour and shininess, 0..1. */
 void import_x3d_colour(geo_appearance *a, const double rgb[3]);
@@ -72,12 +83,14 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
 /* Opens one for reading and tells its size. NULL with *why where there is trouble, and with a *why of NULL where memory
  * is refused. Never waits for a pipe. */
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
-/* All of it, with IMPORT_TAIL zeros behind; free() it. NULL as there, and where it has more bytes than most
- * (IMPORT_NAMED, or SIZE_MAX) or not all of it can be read. */
+/* Passes the file of that name to the listener, which may be NULL. Returns false if memory is refused. */
+bool import_note_named(const import_listener *listener, const char *folder, const char *name) NOC_MUST_USE;
+/* All of it, with IMPORT_TAIL zeros behind; free() it. The listener gets its path. NULL as there, and where it has more
+ * bytes than most (IMPORT_NAMED, or SIZE_MAX) or not all of it can be read. */
 #define IMPORT_NAMED ((size_t)256 << 20)
 #define IMPORT_TAIL 32
-void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most, size_t *size,
-                        const char **why);
+void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most,
+                        const import_listener *listener, size_t *size, const char **why);
 
 /* An image that a material of a mesh looks like. */
 typedef struct mesh_image {

@@ -26,6 +26,7 @@ struct noc_stream {
     bool ended;
     bool measured; /* that all of it is not too much is known, as far as it is told ahead */
     import_budget budget;
+    import_listener listener;
     /* plain and gzip */
     int fd;
     uint64_t consumed; /* bytes taken from fd */
@@ -420,6 +421,23 @@ uint64_t noc_stream_size(const noc_stream *s) { return s->stored; }
 uint64_t noc_stream_read_bytes(const noc_stream *s) { return NOC_MAX(s->furthest, s->delivered); }
 
 bool noc_stream_trailing(const noc_stream *s) { return s->trailing; }
+void noc_stream_listen(noc_stream *s, import_listener listener) { s->listener = listener; }
+
+const import_listener *noc_stream_listener(const noc_stream *s) { return &s->listener; }
+
+bool noc_stream_note_named(const noc_stream *s, const char *name) {
+    if (!s->listener.on_named)
+        return true;
+    const char *slash = strrchr(s->path, '/');
+    char *folder = noc_strndup(s->path, slash ? (size_t)(slash + 1 - s->path) : 0), *turned = noc_strdup(name);
+    for (char *c = turned; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c; /* as whoever opens it reads the name */
+    bool done = folder && turned && import_note_named(&s->listener, folder, turned);
+    free(folder);
+    free(turned);
+    return done;
+}
+
 import_budget *noc_stream_budget(noc_stream *s) { return &s->budget; }
 
 void noc_stream_limit(noc_stream *s, const noc_import_params *params) {

@@ -15,6 +15,7 @@ noc_scene *noc_scene_create_arrays(void) {
     if (scene) {
         forget_bounds(scene->bounds_min, scene->bounds_max);
         scene->maintenance = 1;
+        scene->sources.lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     }
     return scene;
 }
@@ -98,6 +99,7 @@ void noc_scene_destroy(noc_scene *scene) {
         free_slots(&scene->shapes[i]);
     array_free(&scene->reshapes);
     noc_scene_destroy(scene->reshaped);
+    noc_scene_sources_free(&scene->sources);
     arena_free(&scene->names);
     arena_free(&scene->later_names);
     noc_scene_destroy(scene->added);

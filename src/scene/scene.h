@@ -7,6 +7,8 @@
 #include "scene/body.h"
 #include <nocturne/scene.h>
 
+#include <pthread.h>
+
 #define NOC_NO_LIGHT NO_LIGHT
 
 /* Labels of surfaces: classes by their numbers, then walls by what became of them (noc_wall_verdict less 1). */
@@ -235,6 +237,22 @@ typedef struct noc_rgb {
     float v[3];
 } noc_rgb;
 
+/* sources.c: the files that a scene is made of. Added by threads that read. */
+typedef struct noc_scene_source {
+    const char *path, *by; /* by: the file that names it; NULL: the caller of the load does */
+} noc_scene_source;
+typedef struct noc_scene_sources {
+    pthread_mutex_t lock;
+    noc_map of; /* device and number of a file -> place in list */
+    NOC_ARRAY(noc_scene_source) list;
+    noc_arena texts;
+    bool refused; /* memory was, to one of them, which is missing; stays set */
+} noc_scene_sources;
+void noc_scene_sources_free(noc_scene_sources *s);
+/* Notes that the scene is made of this file, or that the file `by` names it. Ignores what is no regular file, or is
+ * noted already. Thread-safe. Sets scene->sources.refused where memory is refused. by: NULL: nobody else names it. */
+void noc_scene_add_source(noc_scene *scene, const char *path, const char *by);
+
 struct noc_scene {
     noc_log *log;
     double origin[3];
@@ -289,6 +307,7 @@ struct noc_scene {
     NOC_ARRAY(noc_scene_gap) gaps;         /* ascending, none touches the next */
     noc_environment *environment;          /* NULL: none */
     noc_arena names;
+    noc_scene_sources sources;
     size_t triangles_dropped, triangles_flat /* of these, for they have no area */, lights_inferred;
     double bounds_min[3], bounds_max[3];
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */

@@ -132,6 +132,8 @@ static noc_camera camera;
     P(noc_scene_get_info(NULL, &(noc_scene_info){ 0 }), true)                                                          \
     P(noc_scene_get_info(scene, NULL), true)                                                                           \
     P((noc_scene_content(NULL, (char[NOC_CONTENT_KEY]){ 0 })), true)                                                   \
+    P(0, noc_scene_find_source(NULL, "a", NULL) == NULL)                                                               \
+    P(0, noc_scene_find_source(scene, NULL, NULL) == NULL)                                                             \
     P(noc_scene_content(scene, NULL), true)                                                                            \
     P(0, !noc_scene_ground(NULL, 0, 0, &(double){ 0 }))                                                                \
     P(0, !noc_scene_ground(scene, 0, 0, NULL))                                                                         \

@@ -52,7 +52,8 @@ static void holes_are_not_copied(void **state) {
     noc_log *log = noc_log_create(&(noc_log_params){ .message = on_message });
     scratch_folder folder;
     struct stat is, was;
-    assert_int_equal(map_copy_geopackage(map, false, &(import_budget){ .memory = 2 * SIZE }, log, &folder), NOC_OK);
+    assert_int_equal(map_copy_geopackage(map, false, &(import_budget){ .memory = 2 * SIZE }, NULL, log, &folder),
+                     NOC_OK);
     snprintf(copy, sizeof(copy), "%s/" MAP_COPY_NAME, folder.path);
     assert_int_equal(stat(map, &was) | stat(copy, &is), 0);
     assert_int_equal(is.st_size, SIZE);
@@ -62,7 +63,8 @@ static void holes_are_not_copied(void **state) {
     close(fd);
     assert_string_equal(end, "ended");
     scratch_remove(&folder);
-    assert_int_equal(map_copy_geopackage(map, false, &(import_budget){ .memory = 100 }, log, &folder), NOC_ERR_MEMORY);
+    assert_int_equal(map_copy_geopackage(map, false, &(import_budget){ .memory = 100 }, NULL, log, &folder),
+                     NOC_ERR_MEMORY);
     assert_non_null(strstr(error, "map.gpkg: its copy, which its log needs, would take"));
     assert_non_null(strstr(error, "the limit --max-memory is"));
     scratch_remove(&folder);

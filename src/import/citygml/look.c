@@ -4,15 +4,17 @@
 #include "import/citygml/citygml.h"
 
 #define MARK "surfaceData" /* in the name of the element that is around each texture and material */
+#define LONGEST_NAME 4096  /* of an image */
 
-/* Are there any in the file? */
-static bool holds_any(cg_parser *p) {
-    enum { CHUNK = 1 << 17, KEEP = sizeof(MARK) - 2 };
-    char *buffer = noc_alloc(KEEP + CHUNK);
-    bool found = false;
+/* Reads all of the file, block by block, until `found` is true of one. A block begins with the last `keep` bytes of
+ * the one before it. */
+static bool scan(cg_parser *p, size_t keep, bool (*found)(cg_parser *p, const char *block, size_t size)) {
+    enum { CHUNK = 1 << 17 };
+    char *buffer = noc_alloc(keep + CHUNK);
+    bool is = false;
     if (!buffer)
         cg_no_memory(p);
-    for (size_t kept = 0, got = 1; buffer && got && !found && !p->status;) {
+    for (size_t kept = 0, got = 1; buffer && got && !is && !p->status;) {
         noc_status status = noc_stream_read(p->stream, buffer + kept, CHUNK, &got);
         if (!status && !p->sink->progress(p->sink->ctx, 0))
             status = NOC_ERR_CANCELLED;
@@ -21,12 +23,39 @@ static bool holds_any(cg_parser *p) {
             break;
         }
         size_t have = kept + got;
-        found = memmem(buffer, have, MARK, strlen(MARK)) != NULL;
-        kept = NOC_MIN(have, (size_t)KEEP);
+        is = found(p, buffer, have);
+        kept = NOC_MIN(have, keep);
         memmove(buffer, buffer + have - kept, kept);
     }
     free(buffer);
-    return found;
+    return is && !p->status;
+}
+
+static bool holds_mark(cg_parser *p, const char *block, size_t size) {
+    (void)p;
+    return memmem(block, size, MARK, strlen(MARK)) != NULL;
+}
+
+/* Notes the images that a block names. A name that is cut at the block's end is met again in the next one. */
+static bool note_images(cg_parser *p, const char *block, size_t size) {
+    static const char before[] = "imageURI>";
+    for (const char *at = block, *end = block + size; (at = memmem(at, (size_t)(end - at), before, strlen(before)));) {
+        char name[LONGEST_NAME];
+        at += strlen(before);
+        const char *stop = memchr(at, '<', (size_t)(end - at));
+        if (!stop)
+            break;
+        while (at < stop && strchr(" \t\r\n", *at))
+            at++;
+        while (stop > at && strchr(" \t\r\n", stop[-1]))
+            stop--;
+        noc_snprintf(name, sizeof(name), "%.*s", (int)NOC_MIN(stop - at, LONGEST_NAME), at);
+        if (*name && !noc_stream_note_named(p->stream, name)) {
+            cg_no_memory(p);
+            break;
+        }
+    }
+    return p->status != NOC_OK;
 }
 
 /* ---- what the elements say ---- */
@@ -218,7 +247,7 @@ static void end_image(cg_parser *p, cg_look *look, char *text) {
     while (end > text && strchr(" \t\r\n", end[-1]))
         *--end = 0;
     look->as.image = arena_strdup(&p->persistent, text + strspn(text, " \t\r\n"));
-    if (!look->as.image)
+    if (!look->as.image || !noc_stream_note_named(p->stream, look->as.image))
         cg_no_memory(p);
 }
 
@@ -272,12 +301,14 @@ static void on_end(void *user, const XML_Char *name) {
 }
 
 noc_status cg_read_looks(cg_parser *p) {
-    if (!p->sink->appearance || !holds_any(p) || p->status)
-        return p->status ? p->status : p->sink->appearance ? noc_stream_rewind(p->stream) : NOC_OK;
-    noc_status status = noc_stream_rewind(p->stream);
-    if (!status)
+    bool wanted = p->sink->appearance, named = noc_stream_listener(p->stream)->on_named;
+    if (!wanted && !named)
+        return NOC_OK;
+    bool any = wanted ? scan(p, strlen(MARK) - 1, holds_mark) : scan(p, LONGEST_NAME, note_images);
+    noc_status status = p->status ? p->status : noc_stream_rewind(p->stream);
+    if (!status && any)
         status = cg_parse(p, 0, &(cg_handlers){ on_start, on_end, on_text });
-    return status ? status : noc_stream_rewind(p->stream);
+    return status || !any ? status : noc_stream_rewind(p->stream);
 }
 
 /* ---- what surfaces look like ---- */

@@ -65,7 +65,8 @@ static uint32_t read_texture(cj_reading *r, const json_t *texture) {
     const char *image = cj_text(texture, "image"), *mode = cj_text(texture, "wrapMode");
     cg_look look = { .as = { .f0 = -1, .roughness = -1, .wrap = *mode ? cg_wrap_of(mode) : NOC_WRAP_REPEAT } };
     uint64_t known;
-    char *key = noc_format("t %d %s", (int)look.as.wrap, image);
+    char *key =
+        noc_stream_note_named(r->parser->stream, image) ? noc_format("t %d %s", (int)look.as.wrap, image) : NULL;
     if (key && !map_get(&r->known_looks, key, &known) &&
         !(look.as.image = arena_strdup(&r->parser->persistent, image))) {
         free(key);
@@ -74,6 +75,13 @@ static uint32_t read_texture(cj_reading *r, const json_t *texture) {
     uint32_t number = look_of(r, key, &look);
     free(key);
     return number;
+}
+
+/* Notes their images alone. */
+static void note_textures(cj_reading *r, const json_t *textures) {
+    for (size_t i = 0; i < json_array_size(textures) && !r->parser->status; i++)
+        if (!noc_stream_note_named(r->parser->stream, cj_text(json_array_get(textures, i), "image")))
+            cg_no_memory(r->parser);
 }
 
 static uint32_t *read_list(cj_reading *r, const json_t *list, uint32_t (*read)(cj_reading *r, const json_t *one),
@@ -103,8 +111,10 @@ void cj_looks_read(cj_reading *r, json_t *root, cj_looks *out) {
     const json_t *from = json_object_get(root, "appearance");
     cj_looks_free(out);
     out->there = json_is_object(from) && r->parser->sink->appearance;
-    if (!out->there)
+    if (!out->there) {
+        note_textures(r, json_object_get(from, "textures"));
         return;
+    }
     out->number[CJ_MATERIAL] =
         read_list(r, json_object_get(from, "materials"), read_material, &out->count[CJ_MATERIAL]);
     if (!r->parser->status)

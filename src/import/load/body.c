@@ -26,6 +26,12 @@ static bool on_progress(void *ctx, double done) {
     return !im->cancelled;
 }
 
+/* import_listener.on_named */
+static void note_named(void *user, const char *path) {
+    const reading_body *b = user;
+    noc_scene_add_source(b->im->scene, path, b->path);
+}
+
 static noc_status read_it(reading_body *b) {
     enum { HEAD = 4096 };
     const noc_import_params *params = b->im->params;
@@ -39,6 +45,7 @@ static noc_status read_it(reading_body *b) {
     if (!stream)
         return status;
     noc_stream_limit(stream, params);
+    noc_stream_listen(stream, (import_listener){ note_named, b });
     for (size_t got = 1; !status && got && size < HEAD; size += got)
         status = noc_stream_read(stream, head + size, HEAD - size, &got);
     const noc_reader *reader = status ? NULL : find_reader(noc_readers, head, size);
@@ -52,7 +59,7 @@ static noc_status read_it(reading_body *b) {
     if (!status && reader->foreign && params->isolate && reader->foreign(head, size)) {
         geo_sink sink = { .ctx = b, .log = b->im->log, .issues = b->issues, .progress = on_progress };
         remote_result result = { 0 };
-        status = remote_read(reader, b->path, params, &sink, &parts, &result);
+        status = remote_read(reader, b->path, params, &sink, &parts, noc_stream_listener(stream), &result);
     } else if (!status) {
         const char *format;
         status = reader->read_mesh(b->path, stream, params, b->own, &place, b->issues, &format);

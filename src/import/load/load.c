@@ -53,13 +53,15 @@ static noc_import_params params_of(const reading *r) {
 }
 
 /* In the helper, or here. The sink is where progress is asked, and of maps where all goes. */
-static noc_status read_remote(reading *r, geo_sink *sink, const mesh_place *place, remote_result *result) {
+static noc_status read_remote(reading *r, const noc_stream *stream, geo_sink *sink, const mesh_place *place,
+                              remote_result *result) {
     importer *im = r->im;
     input *in = r->in;
     mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
     const mesh_parts parts = mesh_scene_parts(&to);
     const noc_import_params params = params_of(r);
-    noc_status status = remote_read(in->reader, in->path, &params, sink, place ? &parts : NULL, result);
+    noc_status status =
+        remote_read(in->reader, in->path, &params, sink, place ? &parts : NULL, noc_stream_listener(stream), result);
     pthread_mutex_lock(&im->lock);
     if (*result->format)
         in->file.format = arena_strdup(&im->report->arena, result->format);
@@ -81,7 +83,7 @@ static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *resul
     bounds_so_far(im, lo, hi);
     geo_sink sink = sink_create(r);
     status = in->remote
-                 ? read_remote(r, &sink, &place, result)
+                 ? read_remote(r, stream, &sink, &place, result)
                  : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
     if (!status)
         warn_if_far(r, lo, hi, floats);
@@ -175,7 +177,7 @@ static noc_status read_objects(reading *r, noc_stream *stream, remote_result *re
     if (!r->im->placed && !ahead)
         return noc_no_memory(r->log, r->in->path);
     const noc_import_params params = params_of(r);
-    noc_status status = r->in->remote ? read_remote(r, &sink, NULL, result)
+    noc_status status = r->in->remote ? read_remote(r, stream, &sink, NULL, result)
                                       : r->in->reader->read(stream, &params, &sink, &r->in->file.format);
     if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
         if (status) {                        /* it is told, and no other */
@@ -199,6 +201,7 @@ noc_status read_file(reading *r) {
     if (!stream)
         return status;
     noc_stream_limit(stream, r->im->params);
+    noc_stream_listen(stream, sources_listener(r));
     if (r->queue) {
         noc_stream_budget(stream)->claim = queue_claim;
         noc_stream_budget(stream)->claimant = r->queue;
@@ -322,6 +325,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         im->inputs[i].repeated = !im->inputs[i].left_out && repeat_file(im, i);
         bool read = !im->inputs[i].repeated && !im->inputs[i].left_out;
         im->bytes_total += read ? (double)im->inputs[i].bytes : 0;
+        if (!im->inputs[i].left_out)
+            noc_scene_add_source(im->scene, im->inputs[i].path, NULL);
     }
     noc_status status = recognise_told(im);
     if (!status)
@@ -507,6 +512,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
     const char *built = status ? NULL : find_built(&im);
+    sources_note_given(&im, paths, path_count, built);
     if (built)
         status = load_built(&im, built);
     else if (!status)
@@ -522,6 +528,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = look_read_images(&im);
     if (!status && !inspect)
         status = finish_materials(scene, params);
+    if (!status && scene->sources.refused)
+        status = noc_no_memory(scene->log, "import");
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (!status && !inspect)

@@ -597,6 +597,12 @@ void heights_lay(importer *im, struct city_ground *ground, double *points, size_
 /* lamps.c: ground where there is none, then lamps. */
 noc_status finish_city(importer *im);
 
+/* sources.c: files that no output may replace (noc_scene_add_source). */
+/* Notes lists of inputs, files of the parameters, and the built city among the inputs (NULL: none). */
+void sources_note_given(const importer *im, const char *const *paths, size_t count, const char *built);
+/* Returns what notes the files that the reading's input names; valid as long as the reading. */
+import_listener sources_listener(reading *r);
+
 /* finish.c */
 noc_status finish_environment(noc_scene *scene, const char *path); /* the map around the scene, by its file */
 /* Of classes, once all is there that is of them, or a built city. */

@@ -212,7 +212,7 @@ static noc_status read_bytes(const importer *im, const scene_image *image, uint8
     if (!strncmp(name, from, length))
         name += length;
     if (folder)
-        *data = *read = import_read_named(folder, name, im->params->allow_outside, IMPORT_NAMED, size, why);
+        *data = *read = import_read_named(folder, name, im->params->allow_outside, IMPORT_NAMED, NULL, size, why);
     free(folder);
     return *read ? NOC_OK : *why ? NOC_ERR_FORMAT : NOC_ERR_MEMORY;
 }

@@ -90,11 +90,16 @@ static noc_status check_rules(const noc_import_params *p, noc_log *log) {
 static noc_status find_profile(importer *im, const noc_luminaire_rule *r, const char *place, int *profile) {
     const char *name = r->profile ? r->profile : "", *slash = strrchr(name, '/'), *why = NULL;
     *profile = !strcmp(name, "none") ? GEO_NO_PROFILE : city_profiles_builtin(name);
-    if (*profile || !*name || !im->profiles)
+    if (*profile || !*name)
         return NOC_OK;
     char *path = noc_format("%s%s", r->profile_base && *name != '/' ? r->profile_base : "", name);
     if (!path)
         return noc_no_memory(im->log, place);
+    noc_scene_add_source(im->scene, path, place);
+    if (!im->profiles) {
+        free(path);
+        return NOC_OK;
+    }
     if (r->profile_base)
         why = import_named_trouble(r->profile_base, path, im->params->allow_outside);
     noc_status status = NOC_OK;

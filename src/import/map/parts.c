@@ -11,7 +11,10 @@ static char *folder_of(const char *path) {
     return noc_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
 }
 
-static noc_status check_part(const char *path, const char *folder, const char *part, bool anywhere, noc_log *log) {
+static noc_status check_part(const char *path, const char *folder, const char *part, bool anywhere,
+                             const import_listener *listener, noc_log *log) {
+    if (!import_note_named(listener, "", part))
+        return noc_no_memory(log, path);
     const char *why = import_named_trouble(folder, part, anywhere);
     return why ? noc_error(log, NOC_ERR_IO, "%s: its part %s cannot be read: %s", path, part, why) : NOC_OK;
 }
@@ -27,7 +30,7 @@ static bool is_part(const char *ending) {
     return false;
 }
 
-noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
+noc_status map_check_shapefile(const char *path, bool anywhere, const import_listener *listener, noc_log *log) {
     char *folder = folder_of(path);
     if (!folder)
         return noc_no_memory(log, path);
@@ -41,7 +44,7 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
         if (strncasecmp(entry->d_name, base, stem) || !is_part(entry->d_name + NOC_MIN(stem, strlen(entry->d_name))))
             continue;
         char *part = noc_format("%s%s", folder, entry->d_name);
-        status = part ? check_part(path, folder, part, anywhere, log) : noc_no_memory(log, path);
+        status = part ? check_part(path, folder, part, anywhere, listener, log) : noc_no_memory(log, path);
         free(part);
     }
     if (dir)
@@ -150,8 +153,8 @@ static noc_status copy_itself(const char *path, const import_budget *budget, dou
     return status;
 }
 
-noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget, noc_log *log,
-                               scratch_folder *folder) {
+noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget,
+                               const import_listener *listener, noc_log *log, scratch_folder *folder) {
     static const char *const logs[] = { "-wal", "-journal" };
     const import_budget memory = { .memory = budget->memory };
     double copied = 0;
@@ -162,7 +165,9 @@ noc_status map_copy_geopackage(const char *path, bool anywhere, const import_bud
         struct stat st;
         char *part = noc_format("%s%s", path, logs[i]);
         bool there = part && !lstat(part, &st);
-        status = !part ? noc_no_memory(log, path) : there ? check_part(path, beside, part, anywhere, log) : NOC_OK;
+        status = !part   ? noc_no_memory(log, path)
+                 : there ? check_part(path, beside, part, anywhere, listener, log)
+                         : NOC_OK;
         if (there && !status && !stat(part, &st) && st.st_size > 0) {
             if (!folder->path)
                 status = copy_itself(path, &memory, &copied, log, folder);

@@ -271,11 +271,12 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     gdal_enter(m);
     noc_status status = gdal_path(stream, log, &path, &m->plain);
     if (!status && m->plain && format->kind == MAP_SHAPEFILE)
-        status = map_check_shapefile(m->name, anywhere, log);
+        status = map_check_shapefile(m->name, anywhere, noc_stream_listener(stream), log);
     if (!status && format->kind == MAP_SHAPEFILE)
         map_count_shapefile(path, m->unpaired, sizeof(m->unpaired));
     if (!status && m->plain && format->kind == MAP_GEOPACKAGE) {
-        status = map_copy_geopackage(m->name, anywhere, noc_stream_budget(stream), log, &m->copy);
+        status = map_copy_geopackage(m->name, anywhere, noc_stream_budget(stream), noc_stream_listener(stream), log,
+                                     &m->copy);
         copied = m->copy.path != NULL;
     }
     if (copied && !status) {

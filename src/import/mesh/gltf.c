@@ -426,6 +426,7 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
                             const mesh_place *place, geo_issues *issues, const char **format) {
     gltf g = { .name = noc_stream_name(stream),
                .budget = noc_stream_budget(stream),
+               .listener = noc_stream_listener(stream),
                .log = scene->log,
                .scene = scene,
                .place = place,
@@ -449,6 +450,7 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
         status = open_glb(&g, (const unsigned char *)data, size, &json, &json_size);
     status = status ? status : parse(&g, json, json_size);
     status = status ? status : gltf_open_buffers(&g);
+    status = status ? status : gltf_note_images(&g, stream);
     size_t images = json_array_size(json_object_get(g.root, "images"));
     if (!status) {
         g.materials = noc_calloc(2 * json_array_size(json_object_get(g.root, "materials")) + 2, sizeof(*g.materials));

@@ -30,7 +30,8 @@ typedef struct gltf {
     noc_scene *scene;
     const mesh_place *place;
     geo_issues *issues;
-    import_budget *budget; /* of the stream */
+    import_budget *budget;           /* of the stream */
+    const import_listener *listener; /* of the stream */
     json_t *root;
     const unsigned char *chunk; /* GLB: the binary one */
     size_t chunk_size;
@@ -69,7 +70,10 @@ const unsigned char *gltf_view(const gltf *g, const json_t *item, size_t *size);
 unsigned char *gltf_decode_data(const char *uri, size_t *size, bool *good);
 void gltf_decode_percent(char *text); /* %20 and the like, in place */
 
-/* gltf_image.c: the texture of a base colour. */
+/* gltf_image.c */
+/* Notes the files of all images, for the stream's listener. */
+noc_status gltf_note_images(const gltf *g, const noc_stream *stream);
+/* The texture of a base colour. */
 typedef struct gltf_texture {
     size_t index, set; /* in "textures"; TEXCOORD_ of that number */
     double offset[2], scale[2], rotation;

@@ -106,7 +106,7 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
         return noc_no_memory(g->log, g->name);
     gltf_decode_percent(name);
     noc_status status = NOC_OK;
-    b->data = b->owned = import_read_named(g->folder, name, g->anywhere, SIZE_MAX, &size, &why);
+    b->data = b->owned = import_read_named(g->folder, name, g->anywhere, SIZE_MAX, g->listener, &size, &why);
     if (b->owned) {
         b->size = size;
         g->budget->stored += (double)size;

@@ -52,6 +52,20 @@ float *gltf_texture_uv(const gltf *g, const gltf_texture *t, const double *place
     return uv;
 }
 
+noc_status gltf_note_images(const gltf *g, const noc_stream *stream) {
+    const json_t *images = json_object_get(g->root, "images");
+    bool noted = true;
+    for (size_t i = 0; i < json_array_size(images) && noted; i++) {
+        const char *uri = json_string_value(json_object_get(json_array_get(images, i), "uri"));
+        char *name = uri && strncmp(uri, "data:", 5) ? noc_strdup(uri) : NULL;
+        if (name)
+            gltf_decode_percent(name);
+        noted = name ? noc_stream_note_named(stream, name) : !uri || !strncmp(uri, "data:", 5);
+        free(name);
+    }
+    return noted ? NOC_OK : noc_no_memory(g->log, g->name);
+}
+
 /* The image's bytes, or its file's name: *name, which the caller frees. *why: it is of no use. */
 static noc_status find_image(const gltf *g, const json_t *item, size_t index, mesh_image *image, char **name,
                              const char **why) {

@@ -332,7 +332,10 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     if (status)
         return status;
     char *folder = noc_strndup(path, (size_t)(base - path));
-    lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside, .textures = textures };
+    lib.folder = (obj_folder){ .path = folder,
+                               .anywhere = params && params->allow_outside,
+                               .listener = noc_stream_listener(stream),
+                               .textures = textures };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
     obj_text text = { 0 };

@@ -1,5 +1,4 @@
 #include "import/mesh/obj_library.h"
-#include "import/import.h"
 
 #include <math.h>
 
@@ -7,7 +6,8 @@
 _Static_assert(LEAST_BYTES < IMPORT_TAIL, "a short one is made longer where it lies");
 
 static char *load(obj_folder *folder, const char *name, size_t *size) {
-    char *data = import_read_named(folder->path, name, folder->anywhere, IMPORT_NAMED, size, &folder->why);
+    char *data =
+        import_read_named(folder->path, name, folder->anywhere, IMPORT_NAMED, folder->listener, size, &folder->why);
     folder->refused = folder->refused || (!data && !folder->why);
     while (data && *size < LEAST_BYTES)
         data[(*size)++] = '\n';
@@ -157,8 +157,19 @@ static bool add_image(obj_images *images, const char *material, const char *p, c
     return memory;
 }
 
+/* Passes the image of a texture statement to the listener. false: no memory. */
+static bool note_texture(const obj_folder *folder, const char *p, const char *end) {
+    obj_image image = { .scale = { 1, 1 } };
+    char *name = folder->listener ? text_behind(texture_options(p, end, &image), end) : NULL;
+    for (char *c = name; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    bool memory = !folder->listener || (name && (!*name || import_note_named(folder->listener, folder->path, name)));
+    free(name);
+    return memory;
+}
+
 /* false: no memory. */
-static bool plain_statements(char *data, size_t size, const char *name, obj_images *images, bool textures,
+static bool plain_statements(char *data, size_t size, const char *name, obj_images *images, const obj_folder *folder,
                              geo_issues *issues) {
     size_t line = 1;
     char *material = NULL;
@@ -178,12 +189,14 @@ static bool plain_statements(char *data, size_t size, const char *name, obj_imag
             free(material);
             memory = (material = text_behind(behind, end)) != NULL;
         }
-        if (diffuse && images && material)
+        if (texture)
+            memory = memory && note_texture(folder, behind, end);
+        if (memory && diffuse && images && material)
             memory = add_image(images, material, behind, end);
         if (!n || *word == '#' || (numbers >= 0 && has_numbers(behind, end, numbers)))
             continue;
         snprintf(id, sizeof(id), "%.150s line %zu", name, line);
-        if (texture && !diffuse && textures)
+        if (texture && !diffuse && folder->textures)
             geo_issue(issues, GEO_GUESSED, "texture of another thing than the diffuse colour, which is not read", id);
         else if (numbers > 0)
             geo_issue(issues, GEO_SKIPPED, "material statement with a number that is none", id);
@@ -208,7 +221,7 @@ char *obj_open_library(obj_folder *folder, const char *name, size_t *size, obj_i
         data = names ? find_all(folder, names, size) : NULL;
         free(names);
     }
-    if (data && !plain_statements(data, *size, begin, images, folder->textures, issues)) {
+    if (data && !plain_statements(data, *size, begin, images, folder, issues)) {
         folder->refused = true;
         free(data);
         data = NULL;

@@ -3,6 +3,7 @@
 #define NOC_OBJ_LIBRARY_H
 
 #include "geo/geo.h"
+#include "import/import.h"
 
 /* The image of a material's diffuse colour: map_Kd. */
 typedef struct obj_image {
@@ -18,12 +19,13 @@ void obj_images_free(obj_images *images);
 
 /* Where libraries are looked for. */
 typedef struct obj_folder {
-    const char *path; /* with a slash at its end, or "" */
-    bool anywhere;    /* they may lie outside it */
-    const char *why;  /* the last one could not be opened */
-    char *missing;    /* the first one that could not be read, and why; free() it */
-    bool refused;     /* memory was, to one of them, which then is not there; stays set */
-    bool textures;    /* are wanted: those that are not read are counted */
+    const char *path;                /* with a slash at its end, or "" */
+    bool anywhere;                   /* they may lie outside it */
+    const import_listener *listener; /* gets their paths and those of all textures; NULL: none */
+    const char *why;                 /* the last one could not be opened */
+    char *missing;                   /* the first one that could not be read, and why; free() it */
+    bool refused;                    /* memory was, to one of them, which then is not there; stays set */
+    bool textures;                   /* are wanted: those that are not read are counted */
 } obj_folder;
 
 /* The text of a library named by mtllib, with a 0 behind it, free() it; NULL where there is none. The name may hold

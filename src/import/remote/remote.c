@@ -317,7 +317,7 @@ static void finish(remote *r) {
 }
 
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
-                       const mesh_parts *parts, remote_result *result) {
+                       const mesh_parts *parts, const import_listener *listener, remote_result *result) {
     remote r = { .reader = reader,
                  .path = path,
                  .params = params,
@@ -325,7 +325,7 @@ noc_status remote_read(const noc_reader *reader, const char *path, const noc_imp
                  .fd = -1,
                  .memory = import_budget_of(params).memory,
                  .started = noc_wall_seconds(),
-                 .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
+                 .from = { .path = path, .sink = sink, .parts = parts, .listener = listener, .result = result } };
     static atomic_bool told;
     *result = (remote_result){ 0 };
     if (!atomic_exchange(&told, true)) {

@@ -50,6 +50,7 @@ enum {
     REMOTE_AREA,      /* count of rings, class, text: id, points of each ring, their coordinates */
     REMOTE_TRACK,     /* count of parts, timed?, text: id, points of each part, their coordinates, their times */
     REMOTE_HEIGHTS,   /* double: metres of a unit of the heights that follow */
+    REMOTE_NAMED,     /* text: path of a file that the input names */
 };
 
 typedef struct remote_head {
@@ -136,15 +137,17 @@ typedef struct remote_result {
 } remote_result;
 
 /* Reads path by the reader in the helper. What it emits goes to the sink (its issues and its log, too), and to parts
- * where the reader reads meshes. sink->progress is asked twenty times a second. */
+ * where the reader reads meshes, paths of named files to the listener. sink->progress is asked twenty times a second.
+ */
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
-                       const mesh_parts *parts, remote_result *result);
+                       const mesh_parts *parts, const import_listener *listener, remote_result *result);
 
-/* What comes back, and where it goes: all zero but for the first four. */
+/* What comes back, and where it goes: all zero but for the first five. */
 typedef struct remote_taker {
     const char *path;
     geo_sink *sink;
-    const mesh_parts *parts; /* NULL: of a map */
+    const mesh_parts *parts;         /* NULL: of a map */
+    const import_listener *listener; /* NULL: none */
     remote_result *result;
     NOC_ARRAY(char) bytes; /* that came and are not taken apart yet, from pos on */
     size_t pos;

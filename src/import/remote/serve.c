@@ -21,7 +21,8 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA || kind == REMOTE_TRACK;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA || kind == REMOTE_TRACK ||
+                 kind == REMOTE_NAMED;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -204,6 +205,12 @@ static noc_status on_mesh(void *ctx, noc_mesh *mesh, double *positions) {
     return NOC_OK;
 }
 
+static void on_named(void *user, const char *path) {
+    serving *s = user;
+    remote_put_text(&s->out, path);
+    emit(s, REMOTE_NAMED);
+}
+
 /* ---- the answer ---- */
 
 static void send_issues(serving *s, const geo_issues *issues) {
@@ -256,6 +263,7 @@ static void serve(serving *s) {
     remote_end end = { .status = (int32_t)opened };
     if (stream) {
         noc_stream_limit(stream, &s->asked.params);
+        noc_stream_listen(stream, (import_listener){ on_named, s });
         end.status =
             s->asked.reader->read_parts
                 ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)

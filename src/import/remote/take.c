@@ -328,6 +328,15 @@ static noc_status take_heights(remote_taker *t, remote_record *one) {
     return t->sink->heights ? t->sink->heights(t->sink->ctx, metres) : NOC_OK;
 }
 
+static noc_status take_named(remote_taker *t, remote_record *one) {
+    const char *path = remote_get_text(one);
+    if (one->bad || !*path)
+        return garbled(t);
+    if (t->listener && t->listener->on_named)
+        t->listener->on_named(t->listener->user, path);
+    return NOC_OK;
+}
+
 static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     switch (kind) {
     case REMOTE_LOG: return take_log(t, one);
@@ -352,6 +361,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_ROAD: return take_road(t, one);
     case REMOTE_AREA: return take_area(t, one);
     case REMOTE_TRACK: return take_track(t, one);
+    case REMOTE_NAMED: return take_named(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }
