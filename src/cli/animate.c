@@ -269,8 +269,19 @@ static noc_status look_at_picture(animation *a, int picture) {
     return status;
 }
 
+/* No picture may replace a file that an input names. */
+static noc_status check_sources(const animation *a) {
+    int status = cli_check_sources(a->job->scene, a->film);
+    for (int i = 0; i < a->pictures && !status; i++) {
+        char *file = cli_series_file(&a->series, i + 1);
+        status = cli_check_sources(a->job->scene, file);
+        free(file);
+    }
+    return status ? NOC_ERR_ARGUMENT : NOC_OK;
+}
+
 static noc_status look_at_pictures(animation *a) {
-    noc_status status = NOC_OK;
+    noc_status status = check_sources(a);
     a->kept = cli_alloc((size_t)a->pictures * sizeof(*a->kept));
     for (int i = 0; i < a->pictures && !status; i++) {
         if (is_mine(a, i) && !a->args->overwrite)

@@ -182,6 +182,8 @@ static int work(bench *b) {
     b->load_seconds = cli_now() - start;
     if (status)
         return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
+    if (cli_check_sources(b->scene, args->output))
+        return CLI_FAILURE;
     noc_scene_get_info(b->scene, &b->info);
     if (!b->info.triangles) {
         cli_error("the inputs hold no surface that can be drawn; nocturne info tells what they hold");

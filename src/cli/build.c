@@ -167,6 +167,8 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     cli_progress_clear();
     if (!status && cli_interrupted())
         status = NOC_ERR_CANCELLED;
+    if (!status && cli_check_sources(scene, args->output))
+        status = NOC_ERR_ARGUMENT;
     status = status ? status : save(args, scene, report, log);
     if (!status && !args->common.quiet)
         print_summary(args, scene, report, cli_now() - started);

@@ -186,9 +186,12 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
 /* output.c */
 bool cli_same_file(const char *a, const char *b); /* both are there, and are one file */
 typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4, CLI_NOCT = 8, CLI_MP4 = 16, CLI_ANY = 32 } cli_ending;
-/* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting.
- */
+/* Can path be written as one of these formats, and is it none of the files that args name to be read? Called before the
+ * long work, with the command's own args. CLI_OK, or an exit status after reporting. */
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args);
+/* Refuses to replace a file that the loaded scene is made of: one that an input names. Called when the scene is loaded,
+ * before anything is made of it. path may be NULL. CLI_OK, or CLI_FAILURE after reporting. */
+int cli_check_sources(const noc_scene *scene, const char *path);
 
 /* Returns the number, or 0 where no digit of it is shown: "%.3f" makes -0.000 of -0.0002. */
 static inline double cli_shown(double x, int decimals) {

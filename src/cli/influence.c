@@ -164,7 +164,7 @@ static noc_status work(void *user) {
     influence_job *job = user;
     influence_args *args = job->args;
     args->render.import.each_lamp = true;
-    noc_status status = cli_site_open(&job->site, &args->render, false);
+    noc_status status = cli_site_open(&job->site, &args->render, false, args->csv);
     return status ? status : args->lamp ? influence_tell_lamp(job) : ask(job);
 }
 

@@ -145,7 +145,7 @@ static noc_status work(void *user) {
     point_list points = { 0 };
     noc_status status = args->points ? measure_read_points(args, &points) : NOC_OK;
     /* A plan of street lighting may not rely on windows. */
-    status = status ? status : cli_site_open(&job->site, &args->render, !args->count_windows);
+    status = status ? status : cli_site_open(&job->site, &args->render, !args->count_windows, args->render.output);
     job->params = (noc_measure_params){ &args->render.render, args->error, 0.1, args->samples };
     job->raster.crs = args->crs;
     job->raster.step = args->grid;

@@ -39,6 +39,43 @@ bool cli_same_file(const char *a, const char *b) {
     return !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
+static const char *find_among(const char *const *files, size_t count, const char *path) {
+    for (size_t i = 0; i < count; i++)
+        if (cli_same_file(files[i], path))
+            return files[i];
+    return NULL;
+}
+
+/* Options whose file is written. */
+static bool is_output(const noc_option *o) {
+    return !strcmp(o->name, "output") || !strcmp(o->name, "csv") || !strcmp(o->name, "influence-obj");
+}
+
+/* Returns the file that an option names to be read and that path names, too; NULL: it names none. */
+static const char *find_in_option(const noc_option *o, const void *value, const char *path) {
+    static const char polygon[] = "polygon:"; /* of a region */
+    const noc_texts *texts = o->kind == NOC_OPTION_TEXTS ? value : NULL;
+    bool file = !strcmp(o->unit, "FILE") && !is_output(o), region = !strcmp(o->unit, "REGION");
+    for (size_t i = 0; i < (texts ? texts->count : 1) && (file || region); i++) {
+        const char *text = texts ? texts->text[i] : *(const char *const *)value;
+        bool prefixed = region && text && !strncmp(text, polygon, strlen(polygon));
+        if (text && (file || prefixed) && cli_same_file(text + (prefixed ? strlen(polygon) : 0), path))
+            return text;
+    }
+    return NULL;
+}
+
+/* Returns the file that path names among those that are read: inputs, recipes, and files of options; NULL: none. */
+static const char *find_read(const cli_command *command, const cli_args *args, const char *path) {
+    const char *found = find_among(args->inputs, args->input_count, path);
+    found = found ? found : find_among(args->said, args->said_count, path);
+    for (const cli_set *set = command->sets; set->table; set++)
+        for (const noc_option *o = set->table(); o->name && !found; o++)
+            if (o->kind == NOC_OPTION_TEXT || o->kind == NOC_OPTION_TEXTS)
+                found = find_in_option(o, (const char *)args + set->offset + o->offset, path);
+    return found;
+}
+
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args) {
     char shown[120];
     noc_text_clean(shown, sizeof(shown), path);
@@ -61,11 +98,12 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
         cli_error("%s is no ordinary file and is left alone", shown);
         return CLI_FAILURE;
     }
-    for (size_t i = 0; exists && i < args->input_count; i++) {
-        if (cli_same_file(args->inputs[i], path)) {
-            cli_error("%s is an input too; it would be overwritten", shown);
-            return CLI_FAILURE;
-        }
+    const char *read = exists ? find_read(command, args, path) : NULL;
+    if (read) {
+        char named[120];
+        cli_error("%s is an input too (%s); it would be overwritten", shown,
+                  noc_text_clean(named, sizeof(named), read));
+        return CLI_FAILURE;
     }
     if (too_long) {
         cli_error("%s: cannot be written: %s", shown, strerror(ENAMETOOLONG));
@@ -78,4 +116,19 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
     status = noc_image_check_path(path, log) ? CLI_FAILURE : CLI_OK;
     noc_log_destroy(log);
     return status;
+}
+
+int cli_check_sources(const noc_scene *scene, const char *path) {
+    char shown[120], named[120], namer[120];
+    const char *by, *source = path ? noc_scene_find_source(scene, path, &by) : NULL;
+    if (!source)
+        return CLI_OK;
+    noc_text_clean(shown, sizeof(shown), path);
+    noc_text_clean(named, sizeof(named), source);
+    if (by)
+        cli_error("%s would overwrite %s, which %s names; name another file", shown, named,
+                  noc_text_clean(namer, sizeof(namer), by));
+    else
+        cli_error("%s would overwrite %s, which the city is made of; name another file", shown, named);
+    return CLI_FAILURE;
 }

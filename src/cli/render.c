@@ -349,13 +349,20 @@ static int draw(render_job *job) {
     return cli_flush(stdout) ? ending : CLI_FAILURE;
 }
 
+/* Pictures of an animation are checked by their names (animate.c). */
+static int check_sources(const render_job *job) {
+    const render_args *args = job->args;
+    int status = args->animation.on ? CLI_OK : cli_check_sources(job->scene, args->output);
+    return status ? status : cli_check_sources(job->scene, args->influence_obj);
+}
+
 static int work(render_job *job) {
     noc_status status = load(job);
     if (!status && !job->scene_info.triangles) {
         cli_error("the inputs hold no surface that can be drawn; nocturne info tells what they hold");
         return CLI_FAILURE;
     }
-    if (cli_is_failure(status))
+    if (cli_is_failure(status) || check_sources(job))
         return CLI_FAILURE;
     return job->args->animation.on ? cli_animate(job) : draw(job);
 }

@@ -17,11 +17,13 @@ static noc_status darken_windows(noc_scene *scene, const noc_window_params *give
     return status ? status : noc_scene_commit(scene);
 }
 
-noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows) {
+noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows, const char *output) {
     const noc_progress progress = { cli_load_progress, NULL };
     site->scene = noc_scene_create(site->log);
     noc_status status = cli_load_city(args, site->scene, &progress, &site->report);
     cli_progress_clear();
+    if (!status && cli_check_sources(site->scene, output))
+        status = NOC_ERR_ARGUMENT;
     if (!status && dark_windows)
         status = darken_windows(site->scene, &args->import.window);
     if (!status)

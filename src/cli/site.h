@@ -36,8 +36,9 @@ typedef struct cli_site {
 /* Checks inputs, camera and device, and adds the inputs that options name. Reads no file but a recipe. Returns CLI_OK,
  * or an exit status after reporting. */
 int cli_site_check(render_args *args);
-/* Loads the inputs and makes a view of them, showing progress. `dark_windows`: all windows are switched off. */
-noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows);
+/* Loads the inputs and makes a view of them, showing progress. `dark_windows`: all windows are switched off. `output`:
+ * the file that will be written; one that the city is made of is an error. NULL: none. */
+noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows, const char *output);
 /* Fills `site` with a log alone, calls `work`, which may open it, and destroys all that is in it. Returns the exit
  * status, after reporting an interruption. */
 int cli_site_run(cli_site *site, render_args *args, noc_status (*work)(void *job), void *job);

@@ -43,6 +43,8 @@ noc_status lab_load_scene(lab_session *lab, size_t index) {
     noc_report_destroy(report);
     if (status)
         return status;
+    if ((status = lab_check_sources(lab)))
+        return status;
     noc_scene_content(lab->scene, lab->content);
     if (!lab->holdings[index].info.triangles)
         return noc_error(lab->log, NOC_ERR_FORMAT, "%s: its inputs hold no surface that can be drawn", scene->name);

@@ -1,6 +1,9 @@
 /* Runs and their rows in memory. */
 #include "lab/session.h"
 
+#include <dirent.h>
+#include <nocturne/scene.h>
+
 lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition) {
     const lab_spec *spec = lab->spec;
     return &lab->runs[(camera * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
@@ -53,6 +56,49 @@ const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool 
     const char *kind = light ? "light" : lab_shown_mode(spec, camera) == LAB_ACCUMULATED ? "mean" : "frame";
     noc_snprintf(text, LAB_TEXT, "%.300s-%s%d.png", lab_slug(spec, camera, slug), kind, frame);
     return text;
+}
+
+/* Returns true if files of such a name are written: tables, the report, and pictures by their frame. */
+static bool is_written(const char *name) {
+    static const char *const kinds[] = { "-mean", "-frame", "-light" };
+    const char *dot = strrchr(name, '.');
+    if (!strcmp(name, "report.md") || (!strncmp(name, "results", 7) && dot && !strcmp(dot, ".csv")))
+        return true;
+    for (size_t i = 0; i < NOC_COUNT(kinds) && dot && (!strcmp(dot, ".png") || !strcmp(dot, ".exr")); i++) {
+        size_t length = strlen(kinds[i]);
+        const char *number = dot;
+        while (number > name && number[-1] >= '0' && number[-1] <= '9')
+            number--;
+        if (number < dot && number - name > (ptrdiff_t)length && !strncmp(number - length, kinds[i], length))
+            return true;
+    }
+    return false;
+}
+
+static noc_status check_folder(const lab_session *lab, const char *folder) {
+    DIR *dir = folder ? opendir(folder) : NULL;
+    noc_status status = folder ? NOC_OK : noc_no_memory(lab->log, lab->folder);
+    struct dirent *entry;
+    while (!status && dir && (entry = readdir(dir))) {
+        char *path = is_written(entry->d_name) ? noc_format("%s/%s", folder, entry->d_name) : NULL;
+        const char *by, *source = path ? noc_scene_find_source(lab->scene, path, &by) : NULL;
+        if (source)
+            status = noc_error(lab->log, NOC_ERR_ARGUMENT,
+                               "%s would be overwritten, and the scene is made of it (%s%s%s): choose another folder",
+                               path, source, by ? ", named by " : "", by ? by : "");
+        free(path);
+    }
+    if (dir)
+        closedir(dir);
+    return status;
+}
+
+noc_status lab_check_sources(const lab_session *lab) {
+    char *pictures = noc_format("%s/pictures", lab->folder);
+    noc_status status = check_folder(lab, pictures);
+    status = status ? status : check_folder(lab, lab->folder);
+    free(pictures);
+    return status;
 }
 
 noc_backend_id lab_backend_of(const char *device) {

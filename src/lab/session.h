@@ -159,6 +159,8 @@ lab_row *lab_row_of(const lab_session *lab, lab_run *run, int mode, int frame);
 char *lab_picture_path(const lab_session *lab, const char *key, int mode, int frame); /* free() it; NULL likewise */
 char *lab_light_path(const lab_session *lab, const char *key, int frame); /* of the frame's light view; likewise */
 /* Of one shown frame's sheet, or of its light view's; writes into text and returns it. */
+/* Reports an error if the experiment would replace a file that the present scene is made of. */
+noc_status lab_check_sources(const lab_session *lab);
 const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, bool light, char text[LAB_TEXT]);
 
 /* Returns the backend that a device's text begins with; embree where it begins with none. */
