@@ -8,10 +8,10 @@
 enum { MOST_TOKENS = 32, TOKEN_SIZE = 24 };
 
 typedef struct token {
+    const char *at;     /* in the text */
     bool number, glued; /* to what is before it */
     double value;
     char word[TOKEN_SIZE]; /* folded */
-    lamp_unit unit;        /* of a number that names one; LAMP_PLAIN: none */
     bool source;           /* a word of a source, or of what belongs to its name */
 } token;
 
@@ -36,15 +36,15 @@ static size_t word_length(const char *p) {
     return n;
 }
 
-/* The multiplication sign of Unicode, or an asterisk. */
-static size_t times_sign(const char *p) { return *p == '*' ? 1 : !strncmp(p, "\xc3\x97", 2) ? 2 : 0; }
+/* The multiplication sign of Unicode, an asterisk, or an at. */
+static size_t times_sign(const char *p) { return *p == '*' || *p == '@' ? 1 : !strncmp(p, "\xc3\x97", 2) ? 2 : 0; }
 
 static void split(const char *text, char decimal, tokens *t) {
     bool glued = false;
     t->count = 0;
     for (const char *p = text; *p && t->count < MOST_TOKENS;) {
         token *one = &t->list[t->count];
-        *one = (token){ .unit = LAMP_PLAIN, .glued = glued };
+        *one = (token){ .at = p, .glued = glued };
         const char *end = NULL;
         size_t times = times_sign(p), n = times ? 0 : word_length(p);
         glued = true;
@@ -70,29 +70,6 @@ static void split(const char *text, char decimal, tokens *t) {
 
 static bool is_word(const tokens *t, size_t i, const char *word) {
     return i < t->count && !t->list[i].number && !strcmp(t->list[i].word, word);
-}
-
-/* Units behind numbers, and numbers of what is no light (volts, hertz, amperes, metres). */
-static void find_units(tokens *t) {
-    static const char *const others[] = { "v", "kv", "volt", "volts", "vac", "hz", "a", "ma", "amp", "amps", "va" };
-    static const lamp_unit wanted[] = { LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN };
-    for (size_t i = 0; i + 1 < t->count; i++) {
-        token *n = &t->list[i];
-        const token *w = &t->list[i + 1];
-        if (!n->number || w->number)
-            continue;
-        for (size_t k = 0; k < NOC_COUNT(others); k++)
-            if (!strcmp(w->word, others[k]))
-                n->unit = LAMP_METRES;
-        for (size_t k = 0; k < NOC_COUNT(wanted) && n->unit == LAMP_PLAIN; k++) {
-            double scale;
-            const char *name;
-            if (!lamp_unit_word(w->word, wanted[k], &scale, &name))
-                continue;
-            n->unit = wanted[k];
-            n->value *= scale;
-        }
-    }
 }
 
 /* Which words name the source: each, with what belongs to a name, is asked by itself. */
@@ -143,34 +120,27 @@ static bool is_lamps_power(double watts) {
     return false;
 }
 
-/* Is the number at i beside a source's name, behind letters of its code at most? */
-static bool beside_source(const tokens *t, size_t i) {
+/* Are the numbers from i on, before `next`, beside a source's name, behind letters of its code at most? */
+static bool beside_source(const tokens *t, size_t i, size_t next) {
     for (size_t k = i; k-- > 0 && !t->list[k].number;) {
         if (t->list[k].source)
             return !(t->list[i].glued && !strncmp(t->list[k].word, "led", 3)); /* LED36: of so many diodes */
         if (!goes_with_source(t->list[k].word))
             break;
     }
-    return i + 1 < t->count && t->list[i + 1].source;
-}
-
-/* 830 behind a fluorescent tube: a colour rendering over 80 and 3000 K. */
-static double colour_code(double value) {
-    double code = fmod(value, 100);
-    bool is =
-        value >= 600 && value < 1000 &&
-        (code == 22 || code == 27 || code == 30 || code == 35 || code == 40 || code == 50 || code == 57 || code == 65);
-    return is ? code * 100 : 0;
+    return next < t->count && t->list[next].source;
 }
 
 static bool within(double value, double least, double most) { return value >= least && value <= most; }
 
-/* "2 x 36": the number before the sign. */
+/* "50 x LED 1W": the number before the sign, with a source's name between at most; 0: none. */
 static int times_before(const tokens *t, size_t i) {
+    while (i && t->list[i - 1].source)
+        i--;
     if (i < 2 || !is_word(t, i - 1, "x") || !t->list[i - 2].number)
         return 0;
     double n = t->list[i - 2].value;
-    return within(n, 1, GEO_MAX_HEADS) && n == floor(n) ? (int)n : 0;
+    return within(n, 1, 99) && n == floor(n) ? (int)n : 0;
 }
 
 static bool is_head_word(const char *word) {
@@ -206,29 +176,71 @@ static int heads_in_words(const tokens *t) {
     return 0;
 }
 
-static void read_numbers(const tokens *t, bool watts_column, lamp_model *m) {
+/* "LED -40W", "<100": a sign that is no dash. */
+static bool is_signed(const char *text, const char *at) {
+    const char *sign = at - 1;
+    return at > text && strchr("-<>", *sign) && (*sign != '-' || sign == text || strchr(" \t(:=", sign[-1]));
+}
+
+/* Behind what a number that is not understood is a part of: "1000.5.2", "2019-05-01", "2x2x36". */
+static const char *behind(const char *at) { return at + strspn(at, "0123456789.,/-:xX*@"); }
+
+static size_t token_at(const tokens *t, size_t from, const char *end) {
+    while (from < t->count && t->list[from].at < end)
+        from++;
+    return from;
+}
+
+/* Watts of the numbers from i on. next: the token behind them. */
+static void read_watts(const tokens *t, size_t i, size_t next, const lamp_number *n, bool watts_column, lamp_model *m) {
+    const token *w = &t->list[i];
+    int times = n->times > 1 ? n->times : times_before(t, i);
+    bool many = n->times > 1 || n->choice == LAMP_HEADS_EACH || within(w->value, 4, 1500);
+    bool unit = n->unit && within(n->value, .5, LAMP_MOST_WATTS);
+    bool bare = !n->unit && many && within(n->value, 4, 1500) && !is_word(t, next, "x") &&
+                (watts_column || beside_source(t, i, next));
+    if (unit && m->unit && !m->choice && fabs(n->value - m->watts) > .05 * m->watts)
+        m->choice = LAMP_FIRST;
+    if (!(unit && !m->unit) && !(bare && !isfinite(m->watts)))
+        return;
+    bool chips =
+        times > GEO_MAX_HEADS || (m->source == GEO_SOURCE_LED && n->value < 4); /* "50 x LED 1W": of one head */
+    m->watts = n->value * (chips && times ? times : 1);
+    m->heads = chips ? 0 : times;
+    m->terms = n->terms;
+    m->choice = n->choice;
+    m->unit = unit;
+    m->clear_unit = unit && (!strncmp(t->list[next - 1].word, "wat", 3) || next == t->count);
+}
+
+/* decimal: as in lamp_quantity. */
+static void read_numbers(const tokens *t, const char *text, bool watts_column, char decimal, lamp_model *m) {
     bool tubes = m->source == GEO_SOURCE_FLUORESCENT || m->source == GEO_SOURCE_LED;
+    const char *done = text;
     for (size_t i = 0; i < t->count; i++) {
-        const token *n = &t->list[i];
-        if (!n->number)
+        const token *one = &t->list[i];
+        lamp_number n, w;
+        if (!one->number || one->at < done)
             continue;
-        if (n->unit == LAMP_LUMENS && !isfinite(m->lumens) && within(n->value, 50, LAMP_MOST_LUMENS))
-            m->lumens = n->value;
-        if (n->unit == LAMP_KELVIN && within(n->value, 1000, 20000))
-            m->kelvin = n->value;
-        if (n->unit == LAMP_PLAIN && tubes && colour_code(n->value) > 0 && !isfinite(m->kelvin)) {
-            m->kelvin = colour_code(n->value);
+        bool watts = lamp_scan_quantity(one->at, LAMP_WATTS, 1, decimal, &w);
+        if (lamp_scan_quantity(one->at, LAMP_LUMENS, 1, decimal, &n) && n.unit) {
+            bool first = !isfinite(m->lumens) && within(n.value, 50, LAMP_MOST_LUMENS);
+            m->lumens = first ? n.value : m->lumens;
+            m->lumens_choice = first ? n.choice : m->lumens_choice;
+        } else if (lamp_scan_quantity(one->at, LAMP_KELVIN, 1, decimal, &n) && n.unit) {
+            bool is = within(n.value, 1000, 20000);
+            m->kelvin = is ? n.value : m->kelvin;
+            m->kelvin_choice = is ? n.choice : m->kelvin_choice;
+        } else if (!(watts && w.unit) && tubes && lamp_colour_code(one->value) > 0 && !isfinite(m->kelvin)) {
+            m->kelvin = lamp_colour_code(one->value);
             continue;
+        } else if (watts && !is_signed(text, one->at)) {
+            n = w;
+            read_watts(t, i, token_at(t, i, w.end), &w, watts_column, m);
+        } else {
+            n.end = behind(one->at);
         }
-        bool unit = n->unit == LAMP_WATTS && within(n->value, .5, LAMP_MOST_WATTS);
-        bool bare = n->unit == LAMP_PLAIN && within(n->value, 4, 1500) && !is_word(t, i + 1, "x") &&
-                    (watts_column || beside_source(t, i));
-        if (!(unit && !m->unit) && !(bare && !isfinite(m->watts)))
-            continue;
-        m->watts = n->value;
-        m->unit = unit;
-        m->clear_unit = unit && (!strncmp(t->list[i + 1].word, "wat", 3) || i + 2 == t->count);
-        m->heads = times_before(t, i);
+        done = n.end;
     }
 }
 
@@ -237,12 +249,11 @@ lamp_model lamp_model_of(const char *text, bool watts_column, char decimal) {
     char folded[256];
     lamp_model m = { .source = GEO_SOURCE_UNKNOWN, .watts = NAN, .lumens = NAN, .kelvin = NAN };
     split(text, decimal, &t);
-    find_units(&t);
     bool named = find_sources(&t);
     lamp_fold(text, true, folded, sizeof(folded));
     m.source = lamp_source_word(folded);
     m.source = m.source < 0 ? GEO_SOURCE_UNKNOWN : m.source;
-    read_numbers(&t, watts_column, &m);
+    read_numbers(&t, text, watts_column, decimal, &m);
     if (!m.heads)
         m.heads = heads_in_words(&t);
     m.plain = named;

@@ -17,6 +17,7 @@ typedef struct reading {
     geo_issues *issues;
     bool type_known;
     int times;    /* the factor of "2x70 W" */
+    int terms;    /* of the sum that the watts are */
     double scale; /* of the value that is read, where it names no unit */
     char decimal; /* the file's decimal sign */
 } reading;
@@ -35,61 +36,93 @@ static bool unread_in(const reading *r, const char *reason, const char *text, co
 
 static bool unread(const reading *r, const char *reason, const char *text) { return unread_in(r, reason, text, NULL); }
 
-/* A quantity in its plausible range; 0 stands for "not known" in many tables. True if *out was set. */
-static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason,
+/* What is counted of a quantity: it is not understood, it is 0, and one of its numbers was taken (lamp_choice). */
+typedef struct reasons {
+    const char *wrong, *zero, *choice[LAMP_HEADS_EACH + 1];
+} reasons;
+#define REASONS(what)                                                                                                  \
+    {                                                                                                                  \
+        what " not understood or implausible", what " of 0, taken as not told", {                                      \
+            NULL, what " of several numbers, the first taken", what " that is a range, its middle taken",              \
+                what " of two numbers, taken as lamps of so much each"                                                 \
+        }                                                                                                              \
+    }
+static const reasons height_reasons = REASONS("height of a lamp");
+static const reasons lumens_reasons = REASONS("luminous flux");
+static const reasons watts_reasons = REASONS("wattage");
+static const reasons kelvin_reasons = REASONS("colour temperature");
+
+/* A guess that is made of a text of several numbers is counted. */
+static void doubt(const reading *r, const reasons *of, lamp_choice choice, const char *text) {
+    if (choice)
+        unread(r, of->choice[choice], text);
+}
+
+/* A quantity in its plausible range; 0 stands for "not known" in many tables, and is counted. True if *out was set. */
+static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const reasons *of,
                           double *out) {
-    double value;
-    int times;
-    if (!lamp_quantity(text, unit, r->scale, r->decimal, &value, &times))
-        return unread(r, reason, text);
-    if (value == 0)
-        return false;
-    if (value < lo || value > hi)
-        return misread(r, reason);
+    lamp_number n;
+    if (!lamp_read_quantity(text, unit, r->scale, r->decimal, &n))
+        return unread(r, of->wrong, text);
+    if (n.value == 0)
+        return misread(r, of->zero);
+    if (n.value < lo || n.value > hi)
+        return misread(r, of->wrong);
     const char *point = strchr(text, '.');
-    if (unit == LAMP_LUMENS && value < 100 && !r->decimal && point && strspn(point + 1, "0123456789") == 3)
+    if (unit == LAMP_LUMENS && n.value < 100 && !r->decimal && point && strspn(point + 1, "0123456789") == 3)
         misread(r, "luminous flux below 100 lm with three decimals: is the point one of thousands?");
-    if (times > 1)
-        r->times = times;
-    *out = value;
+    doubt(r, of, n.choice, text);
+    if (n.times > 1)
+        r->times = n.times;
+    if (unit == LAMP_WATTS)
+        r->terms = n.terms;
+    *out = n.value;
     return true;
 }
 
 /* Of a number without a unit, who loads it asks which one it may be. */
 static bool read_height(reading *r, const lamp_meaning *c, const char *text) {
-    double value;
-    int times;
+    lamp_number n;
     bool unit = c->unit_named || strpbrk(text, "'\"") || *(text + strcspn(text, LETTERS));
-    if (!unit && lamp_quantity(text, LAMP_METRES, 1, r->decimal, &value, &times))
-        r->lamp->bare_height = value;
-    return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
-                         &r->lamp->height);
+    if (!unit && lamp_read_quantity(text, LAMP_METRES, 1, r->decimal, &n))
+        r->lamp->bare_height = n.value;
+    return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, &height_reasons, &r->lamp->height);
 }
 
+/* "1-2" and "1 or 2" tell no number. */
 static bool read_count(reading *r, const char *text) {
-    double value;
-    int times;
-    if (!lamp_quantity(text, LAMP_PLAIN, 1, r->decimal, &value, &times) || value != floor(value) || value > 24)
-        return misread(r, "number of lamps on a pole not understood");
-    if (value < 1)
-        return false;
-    r->lamp->count = (int)value;
+    lamp_number n;
+    bool read = lamp_read_quantity(text, LAMP_PLAIN, 1, r->decimal, &n) && !n.choice;
+    double count = read ? n.value * n.times : -1;
+    if (count == 0)
+        return misread(r, "number of lamps on a pole of 0, taken as not told");
+    if (!(count >= 1 && count <= GEO_MAX_HEADS) || count != floor(count))
+        return unread(r, "number of lamps on a pole not understood", text);
+    r->lamp->count = (int)count;
     return true;
 }
 
 /* Kelvin; also the lamp trade's colour codes: 830 is a colour rendering over 80 and 3000 K. */
 static bool read_kelvin(reading *r, const char *text) {
-    double value;
-    int times;
-    if (!lamp_quantity(text, LAMP_KELVIN, r->scale, r->decimal, &value, &times))
+    lamp_number n;
+    if (!lamp_read_quantity(text, LAMP_KELVIN, r->scale, r->decimal, &n))
         return false;
-    double code = fmod(value, 100);
+    double value = n.value, code = fmod(value, 100);
     if (value >= 600 && value < 1000 && code >= 18 && code <= 65)
         value = code * 100;
     if (!(value >= 1000 && value <= 20000))
         return false;
+    doubt(r, &kelvin_reasons, n.choice, text);
     r->lamp->kelvin = value;
     return true;
+}
+
+static bool read_temperature(reading *r, const char *text) {
+    lamp_number n;
+    if (read_kelvin(r, text))
+        return true;
+    bool zero = lamp_read_quantity(text, LAMP_KELVIN, r->scale, r->decimal, &n) && n.value == 0;
+    return zero ? misread(r, kelvin_reasons.zero) : unread(r, kelvin_reasons.wrong, text);
 }
 
 static bool read_colour(reading *r, const char *text, bool of_the_light) {
@@ -135,26 +168,35 @@ static bool read_directions(reading *r, const char *text) {
 
 /* "LED, 38 WATT" says more than watts, and read_models reads it. */
 static bool read_watts(reading *r, const char *text) {
-    double watts;
-    int times;
+    lamp_number n;
     lamp_model m = { .watts = NAN };
-    if (!lamp_quantity(text, LAMP_WATTS, r->scale, r->decimal, &watts, &times))
+    if (!lamp_read_quantity(text, LAMP_WATTS, r->scale, r->decimal, &n))
         m = lamp_keys_model(r->keys, text, true);
-    return !isfinite(m.watts) && read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS,
-                                               "wattage not understood or implausible", &r->lamp->watts);
+    return !isfinite(m.watts) &&
+           read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, &watts_reasons, &r->lamp->watts);
 }
 
 /* What a description adds to what is known. Watts of a column may be those of all of its heads. */
-static void take_model(reading *r, const lamp_model *m) {
+static void take_model(reading *r, const char *text, const lamp_model *m) {
     geo_lamp *lamp = r->lamp;
     bool watts = isfinite(lamp->watts), same = isfinite(m->watts) && fabs(lamp->watts - m->watts) <= .1 * m->watts;
     if (lamp->source == GEO_SOURCE_UNKNOWN)
         lamp->source = m->source;
     if (m->heads > 1 && r->times <= 1 && (!watts || !isfinite(m->watts) || same))
         r->times = m->heads;
-    lamp->watts = watts ? lamp->watts : m->watts;
-    lamp->lumens = isfinite(lamp->lumens) ? lamp->lumens : m->lumens;
-    lamp->kelvin = isfinite(lamp->kelvin) ? lamp->kelvin : m->kelvin;
+    if (!watts && isfinite(m->watts)) {
+        doubt(r, &watts_reasons, m->choice, text);
+        r->terms = m->terms;
+        lamp->watts = m->watts;
+    }
+    if (!isfinite(lamp->lumens) && isfinite(m->lumens)) {
+        doubt(r, &lumens_reasons, m->lumens_choice, text);
+        lamp->lumens = m->lumens;
+    }
+    if (!isfinite(lamp->kelvin) && isfinite(m->kelvin)) {
+        doubt(r, &kelvin_reasons, m->kelvin_choice, text);
+        lamp->kelvin = m->kelvin;
+    }
 }
 
 static bool lacks(const geo_lamp *lamp) { return lamp->source == GEO_SOURCE_UNKNOWN || !isfinite(lamp->watts); }
@@ -184,7 +226,7 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
             if (m->rank != rank || (!watts && m->field != LAMP_FIELD_TYPE))
                 continue;
             const lamp_model model = lamp_keys_model(r->keys, all[i].value, watts && rank < 2);
-            take_model(r, &model);
+            take_model(r, all[i].value, &model);
             if (watts)
                 continue;
             if (says_something(all[i].value, &model))
@@ -199,7 +241,7 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
         const lamp_model model = lamp_keys_model(r->keys, text, false);
         if (!lamp_model_stands_alone(&model))
             continue;
-        take_model(r, &model);
+        take_model(r, text, &model);
         lamp_keys_described(r->keys, &tags[i]);
     }
     if (strange && r->lamp->source == GEO_SOURCE_UNKNOWN)
@@ -237,14 +279,12 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     case LAMP_FIELD_DIRECTION: return read_directions(r, text);
     case LAMP_FIELD_COUNT: return read_count(r, text);
     case LAMP_FIELD_LUMENS:
-        return read_quantity(r, text, LAMP_LUMENS, 5, LAMP_MOST_LUMENS, "luminous flux not understood or implausible",
-                             &lamp->lumens);
+        return read_quantity(r, text, LAMP_LUMENS, 5, LAMP_MOST_LUMENS, &lumens_reasons, &lamp->lumens);
     case LAMP_FIELD_WATTS:
         if (c->rank == 2 && !(text[0] >= '0' && text[0] <= '9')) /* power=pole and the like */
             return false;
         return read_watts(r, text);
-    case LAMP_FIELD_KELVIN:
-        return read_kelvin(r, text) || misread(r, "colour temperature not understood or implausible");
+    case LAMP_FIELD_KELVIN: return read_temperature(r, text);
     case LAMP_FIELD_COLOUR: return read_colour(r, text, c->rank <= 0);
     case LAMP_FIELD_TYPE:
         return read_type(r, text, c->rank < 4); /* a bare "type" may be the pole's: of it only a source is believed */
@@ -271,9 +311,13 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                         .rgb = { -1, -1, -1 },
                         .id = lamp->id ? lamp->id : "",
                         .ref = "" };
-    reading r = {
-        .lamp = lamp, .keys = keys, .issues = issues, .times = 1, .scale = 1, .decimal = lamp_keys_decimal(keys)
-    };
+    reading r = { .lamp = lamp,
+                  .keys = keys,
+                  .issues = issues,
+                  .times = 1,
+                  .terms = 1,
+                  .scale = 1,
+                  .decimal = lamp_keys_decimal(keys) };
     said few[32], *all = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*all)) : few;
     if (!all)
         return false;
@@ -306,6 +350,8 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
     if (all != few)
         free(all);
     lamp_keys_ask(keys, tags, count, lamp);
+    if (r.terms > 1 && lamp->count == r.terms) /* "150 W & 70 W" of two lamps */
+        lamp->watts /= r.terms;
     if (!lamp->count)
         lamp->count = lamp->heading_count ? lamp->heading_count : r.times > 1 ? r.times : 0;
     if (lamp->source == GEO_SOURCE_GAS && !r.type_known)

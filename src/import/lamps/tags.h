@@ -83,16 +83,36 @@ lamp_unit lamp_field_unit(lamp_field field);
 /* By the words alone. Field NONE where they do not know it. */
 lamp_meaning lamp_meaning_of(const char *key);
 
+/* ---- quantities (quantity.c) ---- */
+
+/* Which number of several was taken, where a text names several of one thing. All but LAMP_ONE are guesses. */
+typedef enum lamp_choice {
+    LAMP_ONE,       /* there was one, or a plain sum or product */
+    LAMP_FIRST,     /* "70/100", "6;8", "70 W, 100 W": the first */
+    LAMP_MIDDLE,    /* "100-150", "6 to 8 m": the middle of the range */
+    LAMP_HEADS_EACH /* "2 - 150": sooner two of 150 W than a range from 2 to 150 */
+} lamp_choice;
+
+typedef struct lamp_number {
+    double value; /* of a head, in the unit asked for */
+    int times;    /* the factor of "2x70 W", "2@70", "70 W x 2"; else 1. More than GEO_MAX_HEADS are in the value */
+    int terms;    /* of the sum of "70 W + 18 W", which is the value; else 1 */
+    lamp_choice choice;
+    bool unit;       /* it names one */
+    const char *end; /* behind it in the text */
+} lamp_number;
+
 /* ---- free text (model.c) ---- */
 
 /* What a description of a lamp says ("HPS 250W AERO", "2x36W PL-L/830"). */
 typedef struct lamp_model {
     int source;                   /* geo_lamp.source */
     double watts, lumens, kelvin; /* of a head; NaN: not said */
-    int heads;                    /* 0: not said */
-    bool unit, clear_unit;        /* the watts name theirs; by a word that means nothing else where it stands */
-    int clear;                    /* how much a name of its source means that: 0 to 2 */
-    bool plain;                   /* it is the name of a source, with watts or without, and nothing else */
+    int heads, terms;             /* 0: not said; of the sum that the watts are */
+    lamp_choice choice, lumens_choice, kelvin_choice;
+    bool unit, clear_unit; /* the watts name theirs; by a word that means nothing else where it stands */
+    int clear;             /* how much a name of its source means that: 0 to 2 */
+    bool plain;            /* it is the name of a source, with watts or without, and nothing else */
 } lamp_model;
 /* watts_column: a number without a unit is watts, wherever it stands. decimal: as in lamp_quantity. */
 lamp_model lamp_model_of(const char *text, bool watts_column, char decimal);
@@ -309,9 +329,17 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 /* The most that is believed of a lamp. */
 enum { LAMP_MOST_METRES = 60, LAMP_MOST_LUMENS = 500000, LAMP_MOST_WATTS = 5000 };
 
-/* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the
- * factor of "2x", else 1. decimal: the file's decimal sign, '.' or ','; 0: not known. */
+/* The numbers at p, joined by signs or words (+ & / ; | - .. to or). False where none begins there: none of this unit
+ * (240 V), or a malformed one ("1000.5.2"). scale is for values that name no unit. decimal: the file's decimal sign,
+ * '.' or ','; 0: not known. (quantity.c) */
+bool lamp_scan_quantity(const char *p, lamp_unit unit, double scale, char decimal, lamp_number *n);
+/* A whole text: "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6", "8 m (26 ft)". Not understood are words in
+ * place of a unit, and "equivalent". */
+bool lamp_read_quantity(const char *text, lamp_unit unit, double scale, char decimal, lamp_number *n);
+/* The same for who asks only for the value and the heads. */
 bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times);
+/* Is it the colour of a fluorescent tube: 830, a colour rendering over 80 and 3000 K? Kelvin; 0: no. */
+double lamp_colour_code(double value);
 /* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts
  * thousands. 0: both are decimal signs, but for a comma before three digits in a quantity that runs to thousands.
  * Returns the position after it, NULL if there is none. */

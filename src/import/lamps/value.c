@@ -117,51 +117,6 @@ size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const c
     return best;
 }
 
-/* Factor of the unit written at s to the unit wanted; `scale` where none is written; 0: not one of its units. */
-static double unit_factor(const char *s, lamp_unit unit, double scale) {
-    char word[16];
-    size_t n = 0;
-    while (n + 1 < sizeof(word) && isalpha((unsigned char)s[n])) {
-        word[n] = (char)tolower((unsigned char)s[n]);
-        n++;
-    }
-    word[n] = 0;
-    if (!n)
-        return scale;
-    const char *name;
-    return lamp_unit_word(word, unit, &scale, &name) ? scale : 0;
-}
-
-bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times) {
-    *times = 1;
-    if (lamp_blank(text))
-        return false;
-    bool thousands = unit == LAMP_WATTS || unit == LAMP_LUMENS || unit == LAMP_KELVIN;
-    double x;
-    const char *p = lamp_scan_number(skip_blanks(text), thousands, decimal, &x);
-    if (!p)
-        return false;
-    const char *q = skip_blanks(p);
-    if ((*q == 'x' || *q == 'X' || *q == '*') && x >= 1 && x <= 99 && x == floor(x)) {
-        double each;
-        const char *r = lamp_scan_number(skip_blanks(q + 1), thousands, decimal, &each);
-        if (r) {
-            *times = (int)x;
-            x = each;
-            q = skip_blanks(r);
-        }
-    }
-    if (unit == LAMP_METRES && *q == '\'') { /* feet and inches */
-        double inches = 0;
-        lamp_scan_number(skip_blanks(q + 1), false, decimal, &inches);
-        *value = x * .3048 + inches * .0254;
-        return isfinite(*value);
-    }
-    double factor = unit_factor(q, unit, scale);
-    *value = x * factor;
-    return factor > 0 && isfinite(*value);
-}
-
 char lamp_decimal_sign(const char *text) {
     const char *p = skip_blanks(text);
     p += *p == '-';

@@ -1,0 +1,186 @@
+/* Values of several numbers: what is plain is computed, what is not is taken by a stated choice and counted, and what
+ * makes no sense is counted and not taken. */
+#include "import/lamps/tags.h"
+
+#include "../test.h"
+
+#include <math.h>
+
+/* Reads tags of a lamp; *counted: the first reason that was, "" for none. */
+static geo_lamp read_counted(const lamp_tag *tags, size_t count, char counted[200]) {
+    geo_issues *issues = geo_issues_create();
+    geo_lamp lamp = { .xyz = { 1, 2, NAN } };
+    assert_true(lamp_read(NULL, tags, count, &lamp, issues));
+    *counted = 0;
+    for (size_t i = 0; i < geo_issues_count(issues) && !*counted; i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t n;
+        assert_true(geo_issues_get(issues, i, &reason, &repaired, &n, &examples));
+        snprintf(counted, 200, "%s", reason);
+    }
+    geo_issues_destroy(issues);
+    return lamp;
+}
+
+typedef struct row {
+    const char *text;
+    double value; /* 0: none */
+    int heads;
+    const char *counted; /* a part of the reason; "": nothing is */
+} row;
+
+static void check(const char *key, const row *rows, size_t count, double (*of)(const geo_lamp *lamp)) {
+    for (size_t i = 0; i < count; i++) {
+        char counted[200];
+        const geo_lamp lamp = read_counted(&(lamp_tag){ .key = key, .value = rows[i].text }, 1, counted);
+        double value = of(&lamp), wanted = rows[i].value > 0 ? rows[i].value : NAN;
+        bool same = isnan(wanted) ? isnan(value) : fabs(value - wanted) < 1e-6;
+        bool told = *rows[i].counted ? strstr(counted, rows[i].counted) != NULL : !*counted;
+        if (!same || lamp.count != rows[i].heads || !told)
+            fail_msg("%s=%s: %g, %d heads, \"%s\"", key, rows[i].text, value, lamp.count, counted);
+    }
+}
+
+static double watts_of(const geo_lamp *lamp) { return lamp->watts; }
+static double height_of(const geo_lamp *lamp) { return lamp->height; }
+static double lumens_of(const geo_lamp *lamp) { return lamp->lumens; }
+static double kelvin_of(const geo_lamp *lamp) { return lamp->kelvin > 0 ? lamp->kelvin : NAN; }
+static double count_of(const geo_lamp *lamp) { return lamp->count ? lamp->count : NAN; }
+
+static void test_watts(void **state) {
+    static const row rows[] = {
+        { "2x70W", 70, 2, "" },
+        { "2@150", 150, 2, "" },
+        { "100W x 2", 100, 2, "" },
+        { "100 x 2", 100, 2, "" },
+        { "2x LED 36W", 36, 2, "" },
+        { "50 x LED 1W", 50, 0, "" },
+        { "50 x 2W", 100, 0, "" },
+        { "70 W + 18 W", 88, 0, "" },
+        { "70+18", 88, 0, "" },
+        { "150W & 70W", 220, 0, "" },
+        { "2x70W + 1x100W", 240, 0, "" },
+        { "HPS 70 W + 18 W", 88, 0, "" },
+        { "PL-L 36/830", 36, 0, "" },
+        { "70 W 230 V 50 Hz", 70, 0, "" },
+        { "70 W (2015)", 70, 0, "" },
+        { "0,1 kW", 100, 0, "" },
+        { "70/100", 70, 0, "first taken" },
+        { "70;100", 70, 0, "first taken" },
+        { "70 or 100 W", 70, 0, "first taken" },
+        { "70 100", 70, 0, "first taken" },
+        { "70 W, 100 W", 70, 0, "first taken" },
+        { "HPS 70/100W", 70, 0, "first taken" },
+        { "0.1/0.15 kW", 100, 0, "first taken" },
+        { "100-150", 125, 0, "middle taken" },
+        { "100 to 150 W", 125, 0, "middle taken" },
+        { "HPS 100\xe2\x80\x93"
+          "150 W",
+          125, 0, "middle taken" },
+        { "2 - 150", 150, 2, "taken as lamps" },
+        { "LED -40W", 0, 0, "wattage not understood" },
+        { "-40", 0, 0, "wattage not understood" },
+        { "<100", 0, 0, "wattage not understood" },
+        { "1000.5.2", 0, 0, "wattage not understood" },
+        { "2019-05-01", 0, 0, "wattage not understood" },
+        { "120/240V", 0, 0, "wattage not understood" },
+        { "2x2x36 W", 0, 0, "wattage not understood" },
+        { "0", 0, 0, "wattage of 0" },
+    };
+    (void)state;
+    check("lamp_wattage", rows, NOC_COUNT(rows), watts_of);
+}
+
+static void test_heights(void **state) {
+    static const row rows[] = {
+        { "8 m (26 ft)", 8, 0, "" },
+        { "16 ft 6 in", 5.0292, 0, "" },
+        { "6 m LED 40 W", 6, 0, "" },
+        { "6 m + 1.5 m", 7.5, 0, "" },
+        { "6m/8m", 6, 0, "first taken" },
+        { "6;8", 6, 0, "first taken" },
+        { "8 m (20 ft)", 8, 0, "first taken" },
+        { "5m50", 5, 0, "first taken" },
+        { "6-8", 7, 0, "middle taken" },
+        { "6 bis 8 m", 7, 0, "middle taken" },
+        { "30 - 40 ft", 10.668, 0, "middle taken" },
+        { "8-6", 8, 0, "first taken" },
+        { "6.5.2", 0, 0, "not understood" },
+        { "0", 0, 0, "height of a lamp of 0" },
+    };
+    (void)state;
+    check("lamp_height", rows, NOC_COUNT(rows), height_of);
+}
+
+static void test_light(void **state) {
+    static const row kelvin[] = {
+        { "3000 K", 3000, 0, "" },
+        { "830", 3000, 0, "" },
+        { "3000/4000", 3000, 0, "first taken" },
+        { "830/840", 3000, 0, "first taken" },
+        { "2700-3000K", 2850, 0, "middle taken" },
+        { "3000.5.1", 0, 0, "colour temperature not understood" },
+        { "0", 0, 0, "colour temperature of 0" },
+    };
+    static const row lumens[] = {
+        { "2 x 1000 lm", 1000, 2, "" },      { "4,000 + 500", 4500, 0, "" },
+        { "3000/4000", 3000, 0, "first" },   { "3000-4000 lm", 3500, 0, "middle taken" },
+        { "0", 0, 0, "luminous flux of 0" }, { "4000 lm equivalent", 0, 0, "luminous flux not understood" },
+    };
+    static const row counts[] = {
+        { "2", 2, 2, "" },      { "1+1", 2, 2, "" },       { "1-2", 0, 0, "number of lamps on a pole not" },
+        { "1;1", 0, 0, "not" }, { "1 or 2", 0, 0, "not" }, { "0", 0, 0, "number of lamps on a pole of 0" },
+        { "1.5", 0, 0, "not" },
+    };
+    (void)state;
+    check("cct", kelvin, NOC_COUNT(kelvin), kelvin_of);
+    check("lumens", lumens, NOC_COUNT(lumens), lumens_of);
+    check("lamp_count", counts, NOC_COUNT(counts), count_of);
+}
+
+/* Of so many lamps as a sum has terms, each has its share. */
+static void test_shares(void **state) {
+    const lamp_tag tags[] = { { .key = "lamp_count", .value = "2" }, { .key = "wattage", .value = "150W & 70W" } };
+    char counted[200];
+    (void)state;
+    const geo_lamp lamp = read_counted(tags, 2, counted);
+    assert_int_equal(lamp.count, 2);
+    assert_float_equal(lamp.watts, 110, 1e-9);
+    assert_string_equal(counted, "");
+}
+
+/* In descriptions, whose flux and colour are read, too. */
+static void test_descriptions(void **state) {
+    static const struct {
+        const char *text;
+        double watts, lumens, kelvin;
+        lamp_choice choice;
+    } rows[] = {
+        { "HPS 150W & 70W", 220, 0, 0, LAMP_ONE },
+        { "LED 40W 3000/4000K", 40, 0, 3000, LAMP_ONE },
+        { "LED 70/100W 3000-5000 lm", 70, 4000, 0, LAMP_FIRST },
+        { "HPS 70W SON 100W", 70, 0, 0, LAMP_FIRST },
+        { "NAV-T -70", 0, 0, 0, LAMP_ONE },
+        { "NAV-T70", 70, 0, 0, LAMP_ONE },
+        { "NAV-T 70-4Y", 70, 0, 0, LAMP_ONE },
+        { "HQL 2x125", 125, 0, 0, LAMP_ONE },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        const lamp_model m = lamp_model_of(rows[i].text, false, 0);
+        double watts = isfinite(m.watts) ? m.watts : 0, lumens = isfinite(m.lumens) ? m.lumens : 0;
+        double kelvin = isfinite(m.kelvin) ? m.kelvin : 0;
+        if (watts != rows[i].watts || lumens != rows[i].lumens || kelvin != rows[i].kelvin ||
+            m.choice != rows[i].choice)
+            fail_msg("%s: %g W, %g lm, %g K, choice %d", rows[i].text, watts, lumens, kelvin, (int)m.choice);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_watts),  cmocka_unit_test(test_heights),      cmocka_unit_test(test_light),
+        cmocka_unit_test(test_shares), cmocka_unit_test(test_descriptions),
+    };
+    return cmocka_run_group_tests_name("import/lamp_numbers", tests, NULL, NULL);
+}
