@@ -13,12 +13,17 @@ extern "C" {
 
 typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
-/* What a default of noc_import_params stands in for where a lamp's file does not tell it: lamp_height, lamp_lumens,
- * lamp_kelvin. */
+/* What is made up of a lamp where its file does not tell it: by a default of noc_import_params (lamp_height,
+ * lamp_lumens, lamp_kelvin), the direction by chance. */
 typedef enum noc_lamp_default {
     NOC_LAMP_HEIGHT,
     NOC_LAMP_FLUX,
     NOC_LAMP_COLOUR,
+    /* Chance decides where neither the lamp nor a road or building near it tells the direction, always alike for the
+     * same place. Known of lamps that stand in a scene, and only of those whose light depends on it: an axis that is
+     * tilted, a distribution that is not alike all around to 5 % of its peak, or a head more than 0.5 m off its pole's
+     * axis. */
+    NOC_LAMP_DIRECTION,
     NOC_LAMP_DEFAULT_COUNT
 } noc_lamp_default;
 
@@ -118,7 +123,8 @@ typedef struct noc_import_params {
      * is a head, which shines from 0 downwards, on poles of ours. NULL, the default: bodies of ours */
     const char *lamp_body;
     unsigned lamp_chosen; /* those of these three that are the caller's own word, so that strict lets them stand in for
-                             what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
+                             what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; 1 << NOC_LAMP_DIRECTION lets chance
+                             pass; default 0 */
     /* Windows on the walls of buildings? AUTO, the default, and ON: on those of every city model. OFF: nowhere. */
     noc_switch windows;
     noc_window_params window;
@@ -264,7 +270,8 @@ typedef struct noc_report_file {
     char decimal_sign; /* of a CSV: '.' or ','; '?' where its numbers do not tell; 0: no CSV */
     size_t lamps_by_source[NOC_SOURCE_COUNT];
     /* Lamps that do not tell it themselves, so that a default is taken: of those mapped, and of all where no scene was
-     * loaded. Watts tell the flux, and most sources the colour. By noc_lamp_default. */
+     * loaded. Watts tell the flux, and most sources the colour. By noc_lamp_default; directions of mapped lamps alone.
+     */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT];
     /* Where a scene was loaded, lamps by what became of them; those in use are mapped. */
     size_t lamps_mapped;     /* stand in the scene */

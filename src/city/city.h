@@ -52,6 +52,7 @@ typedef struct city_lamp_light {
     int index;           /* in the scene */
     double height;       /* m above the lamp's foot; NaN: there is no ground */
     double direction;    /* degrees clockwise from y, to where it faces */
+    bool by_chance;      /* nothing tells that, and the lamp's light depends on it */
     double watts;        /* NaN: not told */
     const char *profile; /* "": none; city_profiles' */
 } city_lamp_light;
@@ -75,6 +76,7 @@ typedef struct city_lamp_params {
 } city_lamp_params;
 
 typedef struct city_lamp_tally {
+    size_t by_chance; /* lamps whose direction nothing tells and whose light depends on it */
     size_t moved;     /* lamps put elsewhere than they were given: out of a building, away from another lamp */
     size_t classless; /* lamps that stand on what names no class, for want of a ground */
     size_t raised;    /* of those, the ones that stand 2 m or more above what is around them: on a roof, perhaps */
@@ -91,7 +93,8 @@ double city_floor(const noc_scene *scene);
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred,
                   geo_issues *issues);
 
-/* Does the lamp not tell it itself, so that params' default stands in? */
+/* Does the lamp not tell it itself, so that params' default stands in? false of the direction, which has none: the
+ * lamp's tally counts it. */
 bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what);
 
 /* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. *lights

@@ -79,6 +79,7 @@ bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
     case NOC_LAMP_HEIGHT: return !lamp->body_heads && !(known(lamp->height, 0) > 0);
     case NOC_LAMP_FLUX: return !(told_lumens(lamp) > 0);
     case NOC_LAMP_COLOUR: return !told_colour(lamp, rgb);
+    case NOC_LAMP_DIRECTION:
     case NOC_LAMP_DEFAULT_COUNT: break;
     }
     return false;
@@ -260,7 +261,8 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     }
     if (params->tally)
         params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];
-    if (!faces && !face(scene, params->tally, p))
+    p->by_chance = !faces && !face(scene, params->tally, p);
+    if (p->by_chance)
         arbitrary_facing(p->foot, p->facing);
     if (lamp->mount == GEO_MOUNT_WALL && !p->on_wall) { /* beside its wall: the bracket reaches back to it */
         p->on_wall = true;
@@ -271,7 +273,8 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
 }
 
 /* The street of a lamp whose body is modelled: where its first head hangs, else as of a lamp without one. */
-static void face_body(const noc_scene *scene, const geo_lamp *lamp, double facing[2]) {
+static void face_body(const noc_scene *scene, const geo_lamp *lamp, lamp_placing *p) {
+    double *facing = p->facing;
     double dx = lamp->head[0][0] - lamp->xyz[0], dy = lamp->head[0][1] - lamp->xyz[1], off = hypot(dx, dy), z;
     if (off > .2) {
         facing[0] = dx / off;
@@ -281,6 +284,7 @@ static void face_body(const noc_scene *scene, const geo_lamp *lamp, double facin
         facing[1] = cos(lamp->direction * M_PI / 180);
     } else if (!site_ground(scene, lamp->xyz[0], lamp->xyz[1], &z) ||
                !site_facing(scene, lamp->xyz[0], lamp->xyz[1], z, facing)) {
+        p->by_chance = true;
         arbitrary_facing(lamp->xyz, facing);
     }
 }
@@ -299,7 +303,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
     if (lamp->body_heads && (params->profiles || lamp->fitting))
-        face_body(scene, lamp, p.facing);
+        face_body(scene, lamp, &p);
     lamp_fitting f = choose_fitting(lamp, params);
     for (int k = 0; k < 3; k++)
         f.emission[k] *= (float)scene->maintenance;

@@ -38,6 +38,7 @@ typedef struct lamp_fitting {
 typedef struct lamp_placing {
     double foot[3];
     double facing[2]; /* unit vector the heads look along */
+    bool by_chance;   /* nothing tells it */
     bool on_wall;
     double wall[2]; /* the wall it hangs on */
     bool crowded;   /* others stand wherever it could */
@@ -74,6 +75,9 @@ typedef enum city_profile_kind {
  * reporting. */
 bool city_profile_give(city_profiles *p, city_profile_kind kind, const geo_fitting *ruled, const double street[3],
                        noc_light *light);
+
+/* Returns true if the distribution that a light was given (city_profile_give) is alike all around its axis. */
+bool city_profile_is_round(const city_profiles *p, city_profile_kind kind, int ruled);
 
 /* Its name; of files, the file's. "" where profiles is NULL. */
 const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled);

@@ -34,6 +34,8 @@ typedef struct builder {
     lamp_shape shape;
 } builder;
 
+#define OFF_POLE 0.5 /* m that a head may hang off its pole's axis as if it hung on it */
+
 /* By what stands there: bollards are low, lanterns stand on posts, others hang over a road or on a wall. */
 static city_profile_kind profile_kind(const builder *b) {
     const lamp_fitting *f = b->of.fitting;
@@ -43,6 +45,23 @@ static city_profile_kind profile_kind(const builder *b) {
         return f->height < CITY_BOLLARD_HEIGHT && !b->of.lamp->body_heads ? CITY_PROFILE_BOLLARD
                                                                           : CITY_PROFILE_POST_TOP;
     return b->of.placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
+}
+
+/* How far its lights are off the axis that the lamp turns about, m; of a modelled body they stay where they are. */
+static double off_axis(const builder *b) {
+    if (b->of.lamp->body_heads)
+        return 0;
+    const double *light = b->body && b->body->whole ? b->body->light : NULL;
+    return light ? hypot(light[0], light[1]) * b->of.fitting->height / light[2] : b->kind.reach;
+}
+
+/* Returns true if chance decides where the lamp faces and its light depends on that. Its profile was given. */
+static bool is_by_chance(const builder *b) {
+    const lamp_fitting *f = b->of.fitting;
+    bool round = f->light != NOC_LIGHT_DISC || f->tilt == 0;
+    if (f->profiled)
+        round = f->tilt == 0 && city_profile_is_round(b->of.params->profiles, profile_kind(b), f->ruled.profile);
+    return b->of.placing->by_chance && (!round || off_axis(b) > OFF_POLE);
 }
 
 /* ---- lights ---- */
@@ -58,6 +77,7 @@ static void tell(const builder *b, int index, const double position[3], const do
         .index = index,
         .height = position[2] - foot,
         .direction = degrees < 0 ? degrees + 360 : degrees,
+        .by_chance = is_by_chance(b),
         .watts = f->watts,
         .profile = f->profiled ? city_profile_name(params->profiles, profile_kind(b), f->ruled.profile) : ""
     };
@@ -384,6 +404,8 @@ int lamp_make(const lamp_making *m, geo_issues *issues) {
     int lights = add_lamp(&b);
     if (!lights) /* the scene said why */
         geo_issue(issues, GEO_SKIPPED, "lamp that the scene refused", m->lamp->id);
+    if (m->params->tally)
+        m->params->tally->by_chance += lights && is_by_chance(&b);
     shape_free(&b.shape);
     return lights;
 }

@@ -9,6 +9,7 @@ typedef struct kept_profile {
     noc_profile *profile;
     int index; /* in the scene; 0: not there yet */
     size_t lights;
+    bool round;                   /* alike all around its axis */
     char *name, *path;            /* of files; NULL: of built-in ones */
     double lumens, watts, kelvin; /* of files; NaN: not told */
 } kept_profile;
@@ -23,6 +24,25 @@ struct city_profiles {
 #define LEAST_LUMENS 100
 #define MOST_LUMENS 500000
 #define MOST_UPWARD (2. / 3)
+
+#define ROUND                                                                                                          \
+    0.05 /* of the peak, by which planes of one that is alike all around differ: measured ones do a little             \
+          */
+
+static bool is_round(const noc_profile *profile) {
+    noc_profile_info info;
+    noc_profile_get_info(profile, &info);
+    for (int g = 0; g < info.gamma_count; g++) {
+        double least = INFINITY, most = 0;
+        for (int c = 0; c < info.c_count; c++) {
+            least = NOC_MIN(least, info.cd[c * info.gamma_count + g]);
+            most = NOC_MAX(most, info.cd[c * info.gamma_count + g]);
+        }
+        if (most - least > ROUND * info.peak)
+            return false;
+    }
+    return true;
+}
 
 /* Reads a file, and reports one that can be no street light. */
 static noc_status load(kept_profile *k, const char *path, noc_log *log) {
@@ -116,6 +136,10 @@ void city_profiles_file(const city_profiles *p, geo_fitting *f) {
     f->file_kelvin = p->of.data[i].kelvin;
 }
 
+bool city_profile_is_round(const city_profiles *p, city_profile_kind kind, int ruled) {
+    return p->of.data[chosen(p, kind, ruled)].round;
+}
+
 const char *city_profile_name(const city_profiles *p, city_profile_kind kind, int ruled) {
     size_t i = p ? chosen(p, kind, ruled) : 0;
     return p ? name_of(p, i) : "";
@@ -140,8 +164,10 @@ bool city_profile_give(city_profiles *p, city_profile_kind kind, const geo_fitti
         noc_scene_out_of_memory(p->scene); /* there is one of each name */
         return false;
     }
-    if (!k->index)
+    if (!k->index) {
+        k->round = is_round(k->profile);
         k->index = noc_scene_add_profile(p->scene, k->profile);
+    }
     if (k->index < 1)
         return false;
     k->lights++;

@@ -30,18 +30,20 @@ void cli_add_named(cli_args *args, const noc_import_params *import) {
     add_texts(args, &import->tracks);
 }
 
-/* By noc_lamp_default. */
+/* By noc_lamp_default; without an option: chance decides. */
 static const struct {
     const char *option, *what, *unit;
 } lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
     [NOC_LAMP_HEIGHT] = { "lamp-height", "height", "m" },
     [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each, 500 at most below 1.5 m" },
     [NOC_LAMP_COLOUR] = { "lamp-kelvin", "colour", "K" },
+    [NOC_LAMP_DIRECTION] = { NULL, "direction", NULL },
 };
 
 void cli_note_chosen(const cli_args *args, noc_import_params *import) {
     for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++)
-        import->lamp_chosen |= cli_given(args, lamp_defaults[i].option) ? 1u << i : 0;
+        if (lamp_defaults[i].option && cli_given(args, lamp_defaults[i].option))
+            import->lamp_chosen |= 1u << i;
 }
 
 void cli_print_sky(const char *heading, double sky) {
@@ -88,14 +90,17 @@ void cli_print_windows(const char *heading, const noc_window_counts *c) {
 
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import) {
-    const double values[] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };
+    const double values[NOC_LAMP_DEFAULT_COUNT] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };
     char a[32];
     const char *before = heading;
     for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
         if (!assumed[i])
             continue;
-        printf("%s%s without %s: %.10g %s (--%s)", before, noc_text_count(a, assumed[i]), lamp_defaults[i].what,
-               values[i], lamp_defaults[i].unit, lamp_defaults[i].option);
+        printf("%s%s without %s: ", before, noc_text_count(a, assumed[i]), lamp_defaults[i].what);
+        if (lamp_defaults[i].option)
+            printf("%.10g %s (--%s)", values[i], lamp_defaults[i].unit, lamp_defaults[i].option);
+        else
+            fputs("by chance", stdout);
         before = ", ";
     }
     if (before != heading)

@@ -89,9 +89,10 @@ static noc_report_lamp told_by_scene(const noc_scene *scene, const noc_light_inf
 
 static void put_lamp(line *l, const noc_light_info *light, const noc_report_lamp *told, const char *group,
                      const char *crs, const double at[6]) {
-    static const char *const defaults[NOC_LAMP_DEFAULT_COUNT] = {
-        [NOC_LAMP_HEIGHT] = "height", [NOC_LAMP_FLUX] = "lumens", [NOC_LAMP_COLOUR] = "kelvin"
-    };
+    static const char *const defaults[NOC_LAMP_DEFAULT_COUNT] = { [NOC_LAMP_HEIGHT] = "height",
+                                                                  [NOC_LAMP_FLUX] = "lumens",
+                                                                  [NOC_LAMP_COLOUR] = "kelvin",
+                                                                  [NOC_LAMP_DIRECTION] = "direction" };
     const double *d = light->light.direction;
     char assumed[40] = "";
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {

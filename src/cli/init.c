@@ -187,13 +187,13 @@ static void print_texts(FILE *out, const noc_texts *texts, const char *key, cons
 }
 
 static void print_lamps(FILE *out, const init_args *args, const found *all) {
-    static const char *const what[NOC_LAMP_DEFAULT_COUNT] = { "height", "flux", "colour" };
+    static const char *const what[NOC_LAMP_DEFAULT_COUNT] = { "height", "flux", "colour" }; /* that have an option */
     char a[32], b[32];
     if (!all->lamps && !all->builtin)
         fputs("\n# No file holds lamps: some are placed by a rule, unless infer-lamps is off.\n", out);
     const char *before = "\n";
     for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
-        if (!all->lamps_assumed[i])
+        if (!all->lamps_assumed[i] || !what[i])
             continue;
         fprintf(out, "%s# %s of %s lamps tell no %s: what stands below is taken.\n", before,
                 noc_text_count(a, all->lamps_assumed[i]), noc_text_count(b, all->lamps), what[i]);

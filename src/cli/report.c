@@ -102,6 +102,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] },
                  { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
                  { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
+                 { "lamps-direction-assumed", t.lamps_assumed[NOC_LAMP_DIRECTION] },
                  { "tracks-of-cars", t.tracks },
                  { "cars", t.cars },
                  { "cars-on-roads", t.road_cars },

@@ -133,7 +133,7 @@ static void note_chosen(json_t *object, lab_scene *scene) {
     static const char *const names[NOC_LAMP_DEFAULT_COUNT] = {
         [NOC_LAMP_HEIGHT] = "lamp-height", [NOC_LAMP_FLUX] = "lamp-lumens", [NOC_LAMP_COLOUR] = "lamp-kelvin"
     };
-    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
+    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT && names[i]; i++) {
         const noc_option *o;
         bool said = json_object_get(object, names[i]) != NULL;
         for (size_t k = 0; (o = noc_recipe_option(scene->recipe, k)); k++)

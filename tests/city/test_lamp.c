@@ -74,7 +74,7 @@ static void test_kelvin_back(void **state) {
 static void test_assumes(void **state) {
     geo_lamp l = lamp_at(0, 0);
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
-        assert_true(city_lamp_assumes(&l, (noc_lamp_default)what));
+        assert_int_equal(city_lamp_assumes(&l, (noc_lamp_default)what), what != NOC_LAMP_DIRECTION);
     l.height = 4;
     assert_false(city_lamp_assumes(&l, NOC_LAMP_HEIGHT));
     l.watts = 50;

@@ -403,8 +403,9 @@ result $? "what they do not tell, and what is taken for it, is told"
 printf 'id,lon,lat,lamp_height,lumens\na,11.4226,48.7591,5,900\nb,11.4227,48.7592,,900\n' >told.csv
 run render "$gml" told.csv $view --lamp-kelvin 2700 -o told.png
 test "$(meta told.png lamps-height-assumed) $(meta told.png lamps-flux-assumed) $(meta told.png lamps-colour-assumed)" \
-    = "1 0 2" &&
-    grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 2700 K (--lamp-kelvin)$' out
+    = "1 0 2" && test "$(meta told.png lamps-direction-assumed)" = 2 &&
+    grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 2700 K (--lamp-kelvin), 2' out &&
+    grep -q ', 2 without direction: by chance$' out
 result $? "and in the metadata"
 printf '%s\n' 'id;lon;lat;lamp_height;lumens;watts;cct' 'a;11,4226;48,7591;5;1.200;20;2700' \
     'b;11,4227;48,7592;1.200;9.000;70;4000' >comma.csv

@@ -238,7 +238,7 @@ static void test_assumed(void **state) {
         assert_int_equal(t.lamps_assumed[what], 1);
     finish(&r);
     p.strict = true;
-    p.lamp_chosen = 1u << NOC_LAMP_HEIGHT | 1u << NOC_LAMP_COLOUR;
+    p.lamp_chosen = 1u << NOC_LAMP_HEIGHT | 1u << NOC_LAMP_COLOUR | 1u << NOC_LAMP_DIRECTION;
     LOAD(&r, p, file("a", CITY), file("l", lamps));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
     const char *said = noc_log_last_error(r.log);
@@ -249,6 +249,7 @@ static void test_assumed(void **state) {
     load_with(&r, p, true, PATHS(file("l", lamps)));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
     assert_int_equal(noc_report_get_file(r.report, 0)->lamps_assumed[NOC_LAMP_FLUX], 1);
+    assert_int_equal(noc_report_get_file(r.report, 0)->lamps_assumed[NOC_LAMP_DIRECTION], 0); /* it stands nowhere */
     finish(&r);
 }
 

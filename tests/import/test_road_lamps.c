@@ -283,6 +283,41 @@ static void facing(void **state) {
     assert_int_equal(within(99.9, 96.3, 100.1, 98, false), 1); /* its arm reaches north */
 }
 
+static size_t by_chance(void) {
+    noc_report_totals totals;
+    noc_report_get_totals(report, &totals);
+    return totals.lamps_assumed[NOC_LAMP_DIRECTION];
+}
+
+/* Lamps whose direction nothing tells are counted: none beside a road of a map, all without one; nor are round ones. */
+static void facing_by_chance(void **state) {
+    const char *beside = "[690100,5330095.8]", *far = "[690120,5330300]";
+    char text[3000];
+    for (int i = 0; i < 4; i++) {
+        bool road = i & 1, lantern = i & 2;
+        const char *tags =
+            lantern ? "\"highway\":\"street_lamp\",\"lamp_type\":\"lantern\"" : "\"highway\":\"street_lamp\"";
+        snprintf(text, sizeof(text),
+                 MAP("%s" FEATURE("node/1", "%s", "\"type\":\"Point\",\"coordinates\":%s") "," FEATURE(
+                     "node/2", "%s", "\"type\":\"Point\",\"coordinates\":[690150,5330105]")),
+                 road ? DARK("way/1") "," : "", tags, road ? beside : far, tags);
+        load(NOC_SWITCH_AUTO, write_file("chance.json", text), NULL);
+        assert_int_equal(scene->lights.len, 2);
+        assert_int_equal(by_chance(), road || lantern ? 0 : 2);
+    }
+    noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+    params.strict = true;
+    for (int chosen = 0; chosen < 2; chosen++) {
+        params.lamp_chosen = 7u | (chosen ? 1u << NOC_LAMP_DIRECTION : 0);
+        const char *path = write_file("chance.json", MAP(FAR_LAMP));
+        forget();
+        *told = 0;
+        scene = noc_scene_create(log_);
+        assert_int_equal(noc_scene_load(scene, &path, 1, &params, &report), chosen ? NOC_OK : NOC_ERR_FORMAT);
+        assert_true(chosen || strstr(told, "guessed at: 1; 1 x lamp facing by chance"));
+    }
+}
+
 /* A dozen lamps of one street, and 2 km of other lit streets, which they do not silence: in two files or in one. */
 static void a_dozen(void **state) {
     char lamps[4000] = "", roads[8000] = "", both[12000], text[12200];
@@ -354,6 +389,7 @@ int main(void) {
         cmocka_unit_test(water),
         cmocka_unit_test(box),
         cmocka_unit_test(facing),
+        cmocka_unit_test(facing_by_chance),
         cmocka_unit_test(strict),
         cmocka_unit_test(a_dozen),
     };

@@ -23,7 +23,8 @@ void each_lamp_begin(importer *im, const input *in, lamp_roads roads, const geo_
                                       .rules = kept(im, matched, last->rules),
                                       .tags = kept(im, lamp->tags, last->tags) };
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {
-        bool chosen = !in && what != NOC_LAMP_COLOUR && !(said >> what & 1); /* by the road, for one */
+        bool chosen =
+            !in && (what == NOC_LAMP_HEIGHT || what == NOC_LAMP_FLUX) && !(said >> what & 1); /* by the road */
         if (chosen || city_lamp_assumes(lamp, (noc_lamp_default)what))
             im->lamp_now.assumed |= 1u << what;
     }
@@ -37,6 +38,7 @@ void each_lamp_light(void *user, const city_lamp_light *light) {
     l.height = light->height;
     l.direction = light->direction;
     l.watts = light->watts;
+    l.assumed |= light->by_chance ? 1u << NOC_LAMP_DIRECTION : 0;
     if (!l.file || !l.street || !l.road || !l.rules || !l.tags || !l.profile || !array_push(&im->report->lamps, l))
         noc_scene_out_of_memory(im->scene);
 }

@@ -180,7 +180,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
             in->file.lamps_dropped++;
             continue;
         }
-        size_t moved = params->tally->moved;
+        size_t moved = params->tally->moved, by_chance = params->tally->by_chance;
         geo_lamp lamp = p->lamp;
         geo_fitting fitting;
         luminaires_dress(im, in, road_lamps_near(im, lamp.xyz), &lamp, &fitting);
@@ -190,6 +190,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;
         if (lights > 0)
             report_assumed(&in->file, &lamp);
+        in->file.lamps_assumed[NOC_LAMP_DIRECTION] += params->tally->by_chance - by_chance;
         fate->mapped += lights > 0;
         fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
     }

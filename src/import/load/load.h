@@ -376,7 +376,7 @@ bool report_add(noc_report *report, const noc_report_file *file, const geo_issue
 bool report_pane(noc_report *report, size_t file, bool counts) NOC_MUST_USE;
 /* Groups of lights, as the scene has them. */
 noc_status report_groups(noc_report *report, const noc_scene *scene);
-/* Counts what the lamp does not tell. */
+/* Counts what the lamp does not tell, but its direction. */
 void report_assumed(noc_report_file *file, const geo_lamp *lamp);
 /* The error that --strict makes of what was left out or guessed at; NOC_OK where nothing was. */
 noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log);

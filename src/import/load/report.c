@@ -171,6 +171,10 @@ static size_t guesses_at_lamps(const noc_report *report, const noc_import_params
         if (!t.lamps_assumed[what] || params->lamp_chosen >> what & 1)
             continue;
         guesses += t.lamps_assumed[what];
+        if (!of[what].option) {
+            n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp facing by chance", t.lamps_assumed[what]);
+            continue;
+        }
         n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)",
                                   t.lamps_assumed[what], of[what].what, of[what].option, of[what].value);
     }
@@ -203,7 +207,7 @@ static bool put_cause(char *text, size_t size, size_t *used, const char *path, c
 noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log) {
     enum { SHOWN = 8 };
     size_t skipped = 0, guessed = 0, lines = 0, shown = 0, n = 0;
-    char causes[900] = "", lamps[500] = "";
+    char causes[920] = "", lamps[580] = "";
     size_t guesses = guesses_at_lamps(report, params, lamps, sizeof(lamps));
     size_t room = sizeof(causes) - strlen(lamps); /* a message is cut somewhere */
     for (size_t i = 0; i < report->files.len; i++)
