@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <unistd.h>
 
 #define ROW(n, f, h)                                                                                                   \
     { n, "General", NOC_OPTION_BOOL, offsetof(cli_args, f), 0, 1, NULL, "", h }
@@ -93,6 +95,8 @@ static int set_option(const cli_command *command, const noc_option *o, void *par
     noc_log *log = noc_log_create(&(noc_log_params){ .message = keep_message, .user = message });
     noc_status status = noc_option_set(o, params, value, log);
     noc_log_destroy(log);
+    if (status && cli_is_switch(o))
+        return cli_usage(command, "--%s: --%s turns it on, --no-%s off", message, o->name, o->name);
     if (status)
         return cli_usage(command, "--%s", message);
     if (!cli_given(args, o->name) && args->given_count < CLI_GIVEN)
@@ -140,24 +144,41 @@ static int parse_option(const cli_command *command, int argc, char **argv, int *
     return set_option(command, o, (char *)args + offset, value, args);
 }
 
+/* Is the word meant as the value of the switch before it? A number, or a word for on and off, that is no file. */
+static bool is_meant_for_switch(const char *word) {
+    static const char *const words[] = { "true", "false", "on", "off", "yes", "no", "auto" };
+    double number;
+    bool like = noc_text_numbers(word, ',', 1, &number);
+    for (size_t i = 0; i < sizeof(words) / sizeof(*words); i++)
+        like = like || !strcasecmp(word, words[i]);
+    return like && access(word, F_OK);
+}
+
 int cli_parse(const cli_command *command, int argc, char **argv, void *args) {
     cli_args *common = args;
     memcpy(args, command->defaults, command->args_size);
     common->inputs = cli_alloc(sizeof(char *) * (size_t)(argc + 1));
     bool options = true;
+    const char *before = NULL; /* the word before, where it is a switch */
     for (int i = 0; i < argc; i++) {
         const char *word = argv[i];
         if (options && !strcmp(word, "--")) {
             options = false;
         } else if (options && word[0] == '-' && word[1]) {
-            int status = parse_option(command, argc, argv, &i, args);
+            int at = i, status = parse_option(command, argc, argv, &i, args);
             if (status)
                 return status;
+            before = i == at && !strchr(word, '=') && (word[1] == '-' || !word[2]) ? word : NULL;
+            continue;
         } else if (!*word) {
             return cli_usage(command, "an argument is empty");
+        } else if (before && is_meant_for_switch(word)) {
+            return cli_usage(command, "%.60s is a switch and takes no value, and no file is called \"%.60s\"", before,
+                             word);
         } else {
             common->inputs[common->input_count++] = word;
         }
+        before = NULL;
     }
     return CLI_OK;
 }

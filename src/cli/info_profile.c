@@ -27,10 +27,11 @@ static void print_flux(const noc_profile_info *i) {
     if (isnan(i->lamp_lumens)) {
         printf(", absolute: its lamps state none");
     } else {
-        printf("; its lamps %.0f lm", i->lamp_lumens);
+        printf("; its lamps %.*f lm", i->lamp_lumens > 0 && i->lamp_lumens < 1 ? 3 : 0, i->lamp_lumens);
         if (!isnan(i->lor))
             printf(", light output ratio %.1f%% stated", 100 * i->lor);
-        printf(", %.1f%% found", 100 * i->lumens / i->lamp_lumens);
+        if (i->lamp_lumens > 0)
+            printf(", %.1f%% found", 100 * i->lumens / i->lamp_lumens);
     }
     if (!isnan(i->flux_error) && !isnan(i->lor))
         printf(" (%+.1f%%)", 100 * i->flux_error);

@@ -383,11 +383,12 @@ static noc_status set_choice(const noc_option *o, void *field, const char *value
     return NOC_OK;
 }
 
-static noc_status range_error(const noc_option *o, const char *value, noc_log *log) {
+/* wrong: "outside", and the range follows. */
+static noc_status range_error(const noc_option *o, const char *value, const char *wrong, noc_log *log) {
     char lo[40], hi[40];
     format_real(lo, sizeof(lo), o->min);
     format_real(hi, sizeof(hi), o->max);
-    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is outside %s to %s%s%s", o->name, QUOTED(value), lo, hi,
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is %s %s to %s%s%s", o->name, QUOTED(value), wrong, lo, hi,
                      *o->unit ? " " : "", o->unit);
 }
 
@@ -398,15 +399,15 @@ static noc_status set_number(const noc_option *o, void *field, const char *value
     if (wrong)
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " %s", o->name, QUOTED(value), wrong);
     if (!number && !o->read)
-        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is not a number", o->name, QUOTED(value));
+        return range_error(o, value, "not a number from", log);
     if (!(real >= o->min && real <= o->max))
-        return range_error(o, value, log);
+        return range_error(o, value, "outside", log);
     if (o->kind == NOC_OPTION_REAL) {
         memcpy(field, &real, sizeof(real));
         return NOC_OK;
     }
     if (real != (double)(long long)real)
-        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is not a whole number", o->name, QUOTED(value));
+        return range_error(o, value, "not a whole number from", log);
     if (o->kind == NOC_OPTION_INT) {
         int i = (int)real;
         memcpy(field, &i, sizeof(i));

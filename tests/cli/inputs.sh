@@ -46,6 +46,10 @@ test $status = 0 && grep -q '^  flux  *1257 lm' out && grep -q 'upward  *50.00%'
 result $? "info of a luminaire, which makes more light than its lamps"
 run info --json ball.ies
 grep -q '"flux_error": 0.256637' out && python3 -m json.tool <out >/dev/null; result $? "info of a luminaire as JSON"
+sed 's/^1 1000/1 0/' ball.ies >none.ies
+run info none.ies
+test $status = 0 && grep -q '1257 lm; its lamps 0 lm$' out && ! grep -Eqi 'nan|inf[^o]' out
+result $? "a luminaire whose lamps state 0 lm" "$(grep flux out)"
 sed 's/^0 90/0 -90/' ball.ies >bad.ies
 run info bad.ies
 test $status = 1 && grep -q 'bad.ies:6: a vertical angle is out of its range' err

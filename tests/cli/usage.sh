@@ -41,7 +41,18 @@ expect "a sky that is no class" 2 'sky: "bortle:12" is not bortle:1 to bortle:9'
 expect "infinite" 2 'not a number' render $c -o a.png --sky inf
 expect "huge" 2 'not a number' render $c -o a.png --sky 1e400
 expect "unknown choice" 2 'method: "ristir" is none of reference\|is\|ris\|restir' render $c -o a.png --method ristir
-expect "a bool that is none" 2 'temporal: "maybe" is neither true nor false' render $c -o a.png --temporal=maybe
+expect "a bool that is none" 2 'temporal: "maybe" is neither true nor false: .*--no-temporal off' \
+    render $c -o a.png --temporal=maybe
+expect "a value of a switch" 2 '--wet is a switch and takes no value, and no file is called "5"' \
+    render $c --wet 5 -o a.png
+expect "a word of a switch" 2 '--no-wet is a switch and takes no value' render $c -o a.png --no-wet off
+mkdir switches && echo >switches/5
+(cd switches && "$program" render --wet 5 -o a.png) >out 2>err
+test $? = 1 && grep -q '^nocturne: 5: ' err; result $? "a file that is called so is an input"
+rm -r switches
+expect "a number tells its range and unit" 2 'fov: "wide" is not a number from 1 to 170 degrees' \
+    render $c -o a.png --fov wide
+expect "a whole number, too" 2 'width: "9.5" is not a whole number from 1 to 32768 px' render $c -o a.png --width 9.5
 for size in 0x0 0x10 10x0 -1x5 100000x100000 32769x1 10 10x 10x10x10 10,10 axb 1e9x1 10.5x10 ' 10x10' 'infx10' \
     '0x10x10'; do
     expect "size '$size'" 2 '--size: ' render $c -o a.png "--size=$size"

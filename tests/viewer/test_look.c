@@ -78,7 +78,7 @@ static void what_is_wrong_is_told(void **state) {
         { "width", "64", "there is no option \"width\"" }, /* the page says it otherwise */
         { "method", "rt", "method: \"rt\" is none of reference|is|ris|restir" },
         { "draws", "0", "draws: \"0\" is outside 1 to 1024" },
-        { "draws", "2.5", "draws: \"2.5\" is not a whole number" },
+        { "draws", "2.5", "draws: \"2.5\" is not a whole number from 1 to 1024" },
         { "sky", "", "sky: needs a value" },
         { "sky", "-nan", "sky" },
         { "temporal", "perhaps", "neither true nor false" },
