@@ -113,6 +113,11 @@ void city_roads_destroy(city_roads *roads); /* NULL is allowed */
  * middle; may be NULL. */
 const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], double facing[2]);
 
+/* The same of bridges alone, or of roads that are none. *off: how far the place is off the edge of the carriageway [m],
+ * negative on it; INFINITY where there is no such road. */
+const geo_road *city_roads_by_bridge(const city_roads *roads, const double xy[2], bool bridge, double *off,
+                                     double facing[2]);
+
 /* The nearest road with a name, whose middle is within 25 m; NULL: there is none. */
 const geo_road *city_roads_street(const city_roads *roads, const double xy[2]);
 

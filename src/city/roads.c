@@ -99,8 +99,10 @@ const geo_road *city_roads_street(const city_roads *roads, const double xy[2]) {
     return found;
 }
 
+enum { ANY_ROAD = 3, NO_BRIDGES = 1, BRIDGES = 2 };
+
 /* facing NULL: that is not asked, and the place may be the middle of the road. */
-const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], double facing[2]) {
+static const geo_road *beside(const city_roads *roads, const double xy[2], unsigned which, double facing[2]) {
     const geo_road *found = NULL;
     double best = INFINITY, to[2] = { 0 };
     for (road_walk w = road_walk_start(roads, xy); road_walk_next(&w);) {
@@ -108,7 +110,8 @@ const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], d
         double nearest[2], d = road_distance(w.piece, xy, nearest);
         double off = road_off(road, d);
         bool nearer = off < best || (off == best && found && strcmp(road->id, found->id) < 0);
-        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > ROADS_BESIDE || (facing && d < .1) || !nearer)
+        if (road->cls == GEO_ROAD_RAIL || road->tunnel || d > ROADS_BESIDE || (facing && d < .1) || !nearer ||
+            !(which & (road->bridge ? BRIDGES : NO_BRIDGES)))
             continue;
         best = off;
         found = road;
@@ -118,4 +121,18 @@ const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], d
     if (found && facing)
         memcpy(facing, to, sizeof(to));
     return found;
+}
+
+const geo_road *city_roads_beside(const city_roads *roads, const double xy[2], double facing[2]) {
+    return beside(roads, xy, ANY_ROAD, facing);
+}
+
+const geo_road *city_roads_by_bridge(const city_roads *roads, const double xy[2], bool bridge, double *off,
+                                     double facing[2]) {
+    const geo_road *road = beside(roads, xy, bridge ? BRIDGES : NO_BRIDGES, facing);
+    *off = INFINITY;
+    if (road)
+        geo_road_deck(road, xy, off);
+    *off -= road ? geo_road_width(road) / 2 : 0;
+    return road;
 }

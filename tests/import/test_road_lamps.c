@@ -214,6 +214,75 @@ static void bridge_over_a_valley(void **state) {
     assert_true(fabs(z + scene->origin[2] - 28) < 0.01);
 }
 
+/* Whether lamps near a bridge stand on its deck at 40 m, and what is told of it. Street 4 runs below at x 70. */
+static void beside_a_bridge(void **state) {
+    static const char on[] = "lamp on a bridge of a map: put on its deck",
+                      at_edge[] = "lamp beside the carriageway of a bridge of a map: put on its deck",
+                      beside[] = "lamp beside a bridge of a map: left on the ground",
+                      over[] = "lamp at a bridge of a map and a road below it: put on the deck",
+                      below[] = "lamp at a bridge of a map and a road below it: left on the ground";
+    static const struct {
+        double x, y;
+        const char *ele;
+        double foot;
+        const char *reason; /* NULL: nothing is told */
+    } rows[] = {
+        { 55, 2, "", 40, on },
+        { 55, 8, "", 40, at_edge }, /* 5.25 m off the carriageway, which is 5.5 m wide */
+        { 55, -8.5, "", 40, at_edge },
+        { 55, 9.5, "", 28, beside },
+        { 55, 12, "", 28, beside },
+        { 55, 14, "", 28, NULL },
+        { 70, 4, "", 40, over }, /* over the carriageway of the street */
+        { 73.5, 1, "", 40, over },
+        { 73.5, 5, "", 28, below }, /* nearer to the street */
+        { 74.5, 4, "", 40, over },
+        { 73.5, 20, "", 28, NULL },
+        { 55, 8, ",\"ele\":\"39\"", 40, on },
+        { 55, 2, ",\"ele\":\"28\"", 28, NULL },
+        { 74.5, 4, ",\"ele\":\"28\"", 28, NULL },
+    };
+    const noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char text[3000];
+        snprintf(text, sizeof(text),
+                 MAP(APPROACHES "," BRIDGE("") "," FEATURE("node/1", "\"highway\":\"street_lamp\",\"height\":\"6\"%s",
+                                                           "\"type\":\"Point\",\"coordinates\":[%.1f,%.1f]")),
+                 rows[i].ele, 690000 + rows[i].x, 5330000 + rows[i].y);
+        load_params(&params, valley(), write_file("edge.json", text));
+        const noc_report_file *file = noc_report_get_file(report, 1);
+        const char *reason = file->line_count ? file->lines[0].reason : NULL;
+        double foot = height_of(rows[i].x, rows[i].y) - 5.98;
+        if (fabs(foot - rows[i].foot) > .06 || !reason != !rows[i].reason || (reason && strcmp(reason, rows[i].reason)))
+            fail_msg("%g, %g%s: %g, %s", rows[i].x, rows[i].y, rows[i].ele, foot, reason ? reason : "nothing");
+    }
+}
+
+#define FOOTBRIDGE LINE("way/2", "\"highway\":\"footway\",\"bridge\":\"yes\"", "[690039,5330000],[690101,5330000]")
+#define STREET_BELOW LINE("way/4", "\"highway\":\"residential\"", "[690070,5329900],[690070,5330100]")
+
+/* A footbridge has no pavement; a lamp on the deck looks at the bridge, not at the road that is nearer below. */
+static void on_a_footbridge(void **state) {
+    noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+    params.each_lamp = true;
+    const char *map =
+        write_file("foot.json", MAP(FOOTBRIDGE "," STREET_BELOW "," HIGH("node/1", "", "[690055,5330003]") "," HIGH(
+                                    "node/2", "", "[690055,5330006]") "," HIGH("node/3", "", "[690071,5330002]")));
+    load_params(&params, valley(), map);
+    assert_true(fabs(height_of(55, 3) - 45.98) < .06);
+    assert_true(fabs(height_of(71, 2) - 45.98) < .06);
+    bool low = false;
+    for (size_t i = 0; i < scene->lights.len; i++) {
+        const noc_report_lamp *lamp = noc_report_get_lamp(report, i);
+        noc_light_info light;
+        noc_scene_get_light(scene, lamp->light, &light);
+        low = low || (!strcmp(light.light.name, "node/2") && light.centre[2] + scene->origin[2] < 35);
+        if (!strcmp(light.light.name, "node/3"))
+            assert_true(fabs(remainder(lamp->direction - 180, 360)) < 1);
+    }
+    assert_true(low);
+}
+
 #define PIECE(id, more, from, to)                                                                                      \
     LINE(id, "\"highway\":\"residential\",\"bridge\":\"yes\"" more, "[6900" from ",5330000],[690" to ",5330000]")
 #define SAME_MAP(middle)                                                                                               \
@@ -383,6 +452,8 @@ static int finish(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bridge_over_a_valley),
+        cmocka_unit_test(beside_a_bridge),
+        cmocka_unit_test(on_a_footbridge),
         cmocka_unit_test(bridge_of_pieces),
         cmocka_unit_test(when),
         cmocka_unit_test(stable),

@@ -99,6 +99,7 @@ typedef struct pending_lamp {
     given_place given;
     size_t input;
     const geo_road *along; /* a lamp that is placed along this one; NULL: it is the input's */
+    bool faced;            /* its direction is the way to the nearest road */
 } pending_lamp;
 
 /* How surfaces of a file look: a geo_appearance that is of use. */

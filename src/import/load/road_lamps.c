@@ -112,8 +112,10 @@ void road_lamps_face(importer *im, const city_roads *roads) {
     double facing[2];
     for (size_t i = 0; i < im->lamps.len; i++) {
         geo_lamp *lamp = &im->lamps.data[i].lamp;
-        if (!isfinite(lamp->direction) && lamp->mount != GEO_MOUNT_WALL && city_roads_beside(roads, lamp->xyz, facing))
-            lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
+        if (isfinite(lamp->direction) || lamp->mount == GEO_MOUNT_WALL || !city_roads_beside(roads, lamp->xyz, facing))
+            continue;
+        lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
+        im->lamps.data[i].faced = true;
     }
 }
 
@@ -125,24 +127,76 @@ lamp_roads road_lamps_near(const importer *im, const double xy[2]) {
 /* ---- bridges ---- */
 
 #define KERB 3.0   /* m beside the carriageway of a bridge that are its pavement */
+#define EDGE 6.0   /* m beside that of one for cars within which lamps stand: pavement, cycle track, pole */
+#define DOUBT 4.0  /* m beyond, in which a lamp may be of the bridge */
 #define OFF 3.0    /* m between a lamp's elevation and the deck that it stands on */
 #define RAISED 1.0 /* m between a deck and the ground that make a difference */
 
+/* Bridge and road below, near a lamp; distances are from the edge of a carriageway [m], negative on it. */
+typedef struct crossing {
+    const geo_road *bridge;
+    double off, off_below; /* INFINITY: no road */
+    double deck, low;      /* heights */
+} crossing;
+
+/* Returns true if a raised bridge is near the lamp. */
+static bool find_crossing(const importer *im, const city_roads *roads, const pending_lamp *p, crossing *c) {
+    const double *xy = p->lamp.xyz;
+    double off;
+    c->bridge = p->along ? p->along : city_roads_by_bridge(roads, xy, true, &c->off, NULL);
+    if (!c->bridge || !c->bridge->bridge)
+        return false;
+    city_roads_by_bridge(roads, xy, false, &c->off_below, NULL);
+    c->deck = geo_road_deck(c->bridge, xy, &off);
+    return noc_scene_ground(im->scene, xy[0], xy[1], &c->low) && c->deck > c->low + RAISED;
+}
+
+/* Returns true if the lamp stands on the deck. *reason: what makes that doubtful, or that it does not; NULL: nothing.
+ * Over the bridge's carriageway, and over that of a road below it, no pole stands on the ground; else it is of the
+ * nearer road. */
+static bool is_on_deck(const crossing *c, const geo_lamp *lamp, const char **reason) {
+    static const char on[] = "lamp on a bridge of a map: put on its deck",
+                      at_edge[] = "lamp beside the carriageway of a bridge of a map: put on its deck",
+                      beside[] = "lamp beside a bridge of a map: left on the ground",
+                      over[] = "lamp at a bridge of a map and a road below it: put on the deck",
+                      below[] = "lamp at a bridge of a map and a road below it: left on the ground";
+    double path = c->bridge->cls == GEO_ROAD_PATH ? KERB : 0, edge = path > 0 ? KERB : EDGE;
+    *reason = NULL;
+    if (isfinite(lamp->xyz[2])) {
+        bool told = c->off <= edge && fabs(lamp->xyz[2] - c->deck) <= OFF &&
+                    fabs(lamp->xyz[2] - c->deck) <= fabs(lamp->xyz[2] - c->low);
+        *reason = told ? on : NULL;
+        return told;
+    }
+    bool nearer = c->off + path <= c->off_below, road_below = c->off_below <= KERB;
+    if (c->off > edge) {
+        *reason = nearer && c->off <= edge + DOUBT ? beside : NULL;
+        return false;
+    }
+    bool stands = nearer || c->off <= 0 || c->off_below < 0;
+    if (road_below)
+        *reason = stands ? over : below;
+    else if (stands)
+        *reason = c->off <= KERB ? on : at_edge;
+    return stands;
+}
+
 static void put_on_deck(importer *im, const city_roads *roads, pending_lamp *p) {
     geo_lamp *lamp = &p->lamp;
-    const geo_road *road = p->along ? p->along : city_roads_beside(roads, lamp->xyz, NULL);
-    double off, low;
-    if (!road || !road->bridge || lamp->body_heads)
+    const char *reason = NULL;
+    double facing[2];
+    crossing c;
+    if (lamp->body_heads || !find_crossing(im, roads, p, &c))
         return;
-    double deck = geo_road_deck(road, lamp->xyz, &off);
-    bool on = (p->along || off <= geo_road_width(road) / 2 + KERB) &&
-              noc_scene_ground(im->scene, lamp->xyz[0], lamp->xyz[1], &low) && deck > low + RAISED;
-    if (!on || fabs(lamp->xyz[2] - deck) > OFF)
+    bool on = p->along || is_on_deck(&c, lamp, &reason);
+    if (reason)
+        geo_issue(im->inputs[p->input].issues, GEO_GUESSED, reason, lamp->id);
+    if (!on)
         return;
-    lamp->xyz[2] = deck;
+    lamp->xyz[2] = c.deck;
     lamp->on_deck = true;
-    if (!p->along)
-        geo_issue(im->inputs[p->input].issues, GEO_GUESSED, "lamp on a bridge of a map: put on its deck", lamp->id);
+    if (p->faced && city_roads_by_bridge(roads, lamp->xyz, true, &c.off, facing))
+        lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
 }
 
 noc_status road_lamps_raise(importer *im) {
