@@ -177,10 +177,65 @@ static void test_descriptions(void **state) {
     }
 }
 
+/* One source, or none that is understood, which is counted where the flux hangs on it. */
+static void test_sources(void **state) {
+    static const struct {
+        const char *key, *text;
+        int source;
+        double watts;        /* 0: none */
+        const char *counted; /* as in row */
+    } rows[] = {
+        { "lamp_type", "LED ersetzt HQL 125W", GEO_SOURCE_LED, 0, "" },
+        { "lamp_type", "HQL 125W ersetzt durch LED 40W", GEO_SOURCE_LED, 40, "" },
+        { "lamp_type", "HPS 70W replaced by LED 30W", GEO_SOURCE_LED, 30, "" },
+        { "lamp_type", "LED 30W replaces HPS 70W", GEO_SOURCE_LED, 30, "" },
+        { "lamp_type", "HPS to be replaced by LED", GEO_SOURCE_SODIUM, 0, "" },
+        { "lamp_type", "LED 30W (ex NAV 70)", GEO_SOURCE_LED, 30, "" },
+        { "lamp_type", "was HPS 70W, now LED 30W", GEO_SOURCE_LED, 30, "" },
+        { "lamp_type", "HPS -> LED 40W", GEO_SOURCE_LED, 40, "" },
+        { "lamp_type", "LED 40W (250W equivalent)", GEO_SOURCE_LED, 40, "" },
+        { "lamp_type", "Ex-Leuchte LED", GEO_SOURCE_LED, 0, "" },
+        { "lamp_type", "mercury fluorescent 125W", GEO_SOURCE_MERCURY, 125, "" },
+        { "lamp_type", "Halogen-Metalldampf 70W (HQI)", GEO_SOURCE_METAL_HALIDE, 70, "" },
+        { "lamp_type", "LPS (low-pressure sodium)", GEO_SOURCE_LOW_SODIUM, 0, "" },
+        { "lamp_type", "LED lamp no 5", GEO_SOURCE_LED, 0, "" },
+        { "lamp_type", "Not LED", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "kein LED 40W", GEO_SOURCE_UNKNOWN, 40, "source of a lamp not" },
+        { "lamp_type", "LED: no", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "ex NAV", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "HQL 125W ersetzt", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "LED/HPS", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "HPS/LPS 70W", GEO_SOURCE_UNKNOWN, 70, "source of a lamp not" },
+        { "lamp_type", "LED geplant", GEO_SOURCE_UNKNOWN, 0, "source of a lamp not" },
+        { "lamp_type", "BF 125W", GEO_SOURCE_UNKNOWN, 125, "source of a lamp not" },
+        { "lamp_type", "IM 150W", GEO_SOURCE_UNKNOWN, 150, "source of a lamp not" },
+        { "type", "BF 125W", GEO_SOURCE_UNKNOWN, 125, "source of a lamp not" },
+        { "wattage", "BF 125W", GEO_SOURCE_UNKNOWN, 125, "source of a lamp not" },
+        { "what", "BF 125W", GEO_SOURCE_UNKNOWN, 125, "source of a lamp not" },
+        { "wattage", "125 W per lamp", GEO_SOURCE_UNKNOWN, 125, "" },
+        { "wattage", "250 watts equivalent", GEO_SOURCE_UNKNOWN, 0, "wattage not understood" },
+        { "wattage", "40W (250W equivalent)", GEO_SOURCE_UNKNOWN, 40, "" },
+        { "wattage", "HPS 150W ersetzt durch 40W LED", GEO_SOURCE_LED, 40, "" },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char counted[200];
+        const geo_lamp lamp = read_counted(&(lamp_tag){ .key = rows[i].key, .value = rows[i].text }, 1, counted);
+        double watts = isfinite(lamp.watts) ? lamp.watts : 0;
+        bool told = *rows[i].counted ? strstr(counted, rows[i].counted) != NULL : !*counted;
+        if ((int)lamp.source != rows[i].source || watts != rows[i].watts || !told)
+            fail_msg("%s=%s: source %d, %g W, \"%s\"", rows[i].key, rows[i].text, lamp.source, watts, counted);
+    }
+    const lamp_tag tags[] = { { .key = "lamp_type", .value = "BF 125W" }, { .key = "lumens", .value = "4500" } };
+    char counted[200];
+    read_counted(tags, 2, counted);
+    assert_string_equal(counted, ""); /* its flux is told */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_watts),  cmocka_unit_test(test_heights),      cmocka_unit_test(test_light),
-        cmocka_unit_test(test_shares), cmocka_unit_test(test_descriptions),
+        cmocka_unit_test(test_shares), cmocka_unit_test(test_descriptions), cmocka_unit_test(test_sources),
     };
     return cmocka_run_group_tests_name("import/lamp_numbers", tests, NULL, NULL);
 }

@@ -93,7 +93,9 @@ static bool goes_with_source(const char *word) {
         if (!strcmp(word, words[i]))
             return true;
     bool metal = !strncmp(word, "metal", 5) || !strncmp(word, "halid", 5);
-    return metal || (strlen(word) <= 2 && strcmp(word, "x") != 0); /* letters of a code: the T of NAV-T */
+    if (!strcmp(word, "x") || !strcmp(word, "no") || !strcmp(word, "nr"))
+        return false;
+    return metal || strlen(word) <= 2; /* letters of a code: the T of NAV-T */
 }
 
 /* How much a name means a source where a column says nothing of lamps: 2: nothing else, 1: with the watts of a lamp
@@ -244,15 +246,37 @@ static void read_numbers(const tokens *t, const char *text, bool watts_column, c
     }
 }
 
+/* A word that says nothing of the source where no other one does. */
+static bool is_plain_word(const char *word) {
+    static const char *const words[] = { "max",   "min",  "nominal", "rated",      "ca",  "circa",    "approx",
+                                         "about", "each", "total",   "per",        "je",  "and",      "und",
+                                         "or",    "oder", "with",    "mit",        "x",   "standard", "other",
+                                         "of",    "the",  "is",      "electric",   "v",   "volt",     "volts",
+                                         "vac",   "hz",   "a",       "pcs",        "stk", "stuck",    "to",
+                                         "bis",   "tot",  "plus",    "equivalent", "et",  "ou" };
+    double scale;
+    const char *name;
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(word, words[i]))
+            return true;
+    for (int unit = LAMP_METRES; unit < LAMP_PLAIN; unit++)
+        if (lamp_unit_word(word, (lamp_unit)unit, &scale, &name))
+            return true;
+    return (strlen(word) > 2 && goes_with_source(word)) || is_head_word(word) || lamp_type_word(word) >= 0 ||
+           lamp_mount_word(word) >= 0;
+}
+
 lamp_model lamp_model_of(const char *text, bool watts_column, char decimal) {
     tokens t;
-    char folded[256];
+    char folded[256], present[LAMP_PRESENT];
     lamp_model m = { .source = GEO_SOURCE_UNKNOWN, .watts = NAN, .lumens = NAN, .kelvin = NAN };
+    text = lamp_present(text, present) ? present : text;
     split(text, decimal, &t);
     bool named = find_sources(&t);
     lamp_fold(text, true, folded, sizeof(folded));
-    m.source = lamp_source_word(folded);
-    m.source = m.source < 0 ? GEO_SOURCE_UNKNOWN : m.source;
+    int source = lamp_source_word(folded);
+    m.source = source < 0 ? GEO_SOURCE_UNKNOWN : source;
+    m.unclear = source == LAMP_SOURCES_DIFFER;
     read_numbers(&t, text, watts_column, decimal, &m);
     if (!m.heads)
         m.heads = heads_in_words(&t);
@@ -261,6 +285,7 @@ lamp_model lamp_model_of(const char *text, bool watts_column, char decimal) {
         const token *w = &t.list[i];
         m.clear = w->source ? NOC_MAX(m.clear, clearness(w->word)) : m.clear;
         m.plain = m.plain && (w->number || w->source || goes_with_source(w->word));
+        m.strange = m.strange || (source == -1 && !w->number && !is_plain_word(w->word));
     }
     return m;
 }

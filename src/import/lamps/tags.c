@@ -143,8 +143,8 @@ static bool read_colour(reading *r, const char *text, bool of_the_light) {
 
 /* A description may name the source, the fixture or both ("Standard LED", "gaslight"): done when both are known. */
 static bool read_type(reading *r, const char *text, bool of_the_lamp) {
-    char folded[256];
-    lamp_fold(text, true, folded, sizeof(folded));
+    char folded[256], present[LAMP_PRESENT];
+    lamp_fold(lamp_present(text, present) ? present : text, true, folded, sizeof(folded));
     int source = lamp_source_word(folded), type = lamp_type_word(folded);
     if (source >= 0 && r->lamp->source == GEO_SOURCE_UNKNOWN)
         r->lamp->source = source;
@@ -169,9 +169,13 @@ static bool read_directions(reading *r, const char *text) {
 /* "LED, 38 WATT" says more than watts, and read_models reads it. */
 static bool read_watts(reading *r, const char *text) {
     lamp_number n;
+    char present[LAMP_PRESENT];
+    bool words = *(text + strcspn(text, LETTERS)) || strchr(text, '>');
     lamp_model m = { .watts = NAN };
-    if (!lamp_read_quantity(text, LAMP_WATTS, r->scale, r->decimal, &n))
+    if ((words && lamp_present(text, present)) || !lamp_read_quantity(text, LAMP_WATTS, r->scale, r->decimal, &n))
         m = lamp_keys_model(r->keys, text, true);
+    if (!isfinite(m.watts) && words && lamp_present(text, present))
+        return unread(r, watts_reasons.wrong, text);
     return !isfinite(m.watts) &&
            read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, &watts_reasons, &r->lamp->watts);
 }
@@ -216,6 +220,32 @@ static bool says_something(const char *text, const lamp_model *m) {
     return does;
 }
 
+/* Is its source one that is not understood, and what is taken of it not enough to tell the flux? */
+static bool is_strange(const reading *r, const said *s, const lamp_model *m) {
+    bool type = s->meaning.field == LAMP_FIELD_TYPE;
+    if (m->unclear || (m->strange && isfinite(m->watts) && !isfinite(r->lamp->lumens)))
+        return true;
+    return type && s->meaning.rank < 4 && !says_something(s->value, m);
+}
+
+/* Descriptions in columns that say nothing of lamps, where one stands alone. */
+static void read_free_text(reading *r, const lamp_tag *tags, size_t count) {
+    for (size_t i = 0; i < count && lacks(r->lamp); i++) {
+        const char *text = tags[i].value;
+        if (!text || !*(text + strcspn(text, LETTERS)) || !lamp_tag_meaning(r->keys, &tags[i]).free_text)
+            continue;
+        const lamp_model model = lamp_keys_model(r->keys, text, false);
+        if (!lamp_model_stands_alone(&model))
+            continue;
+        bool doubtful = (model.strange || model.unclear) && r->lamp->source == GEO_SOURCE_UNKNOWN &&
+                        !isfinite(r->lamp->watts) && !isfinite(r->lamp->lumens);
+        take_model(r, text, &model);
+        if (doubtful)
+            unread(r, "source of a lamp not understood", text);
+        lamp_keys_described(r->keys, &tags[i]);
+    }
+}
+
 /* Descriptions: in columns of lamps first, by rank, then wherever one stands alone. */
 static void read_models(reading *r, const said *all, size_t count, int ranks, const lamp_tag *tags, size_t tag_count) {
     const said *strange = NULL;
@@ -227,25 +257,15 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
                 continue;
             const lamp_model model = lamp_keys_model(r->keys, all[i].value, watts && rank < 2);
             take_model(r, all[i].value, &model);
-            if (watts)
-                continue;
-            if (says_something(all[i].value, &model))
+            if (!watts && (model.unclear || says_something(all[i].value, &model)))
                 lamp_keys_understood(r->keys, all[i].tag);
-            else if (rank < 4 && !strange)
+            if (!strange && is_strange(r, &all[i], &model))
                 strange = &all[i];
         }
-    for (size_t i = 0; i < tag_count && lacks(r->lamp); i++) {
-        const char *text = tags[i].value;
-        if (!text || !*(text + strcspn(text, LETTERS)) || !lamp_tag_meaning(r->keys, &tags[i]).free_text)
-            continue;
-        const lamp_model model = lamp_keys_model(r->keys, text, false);
-        if (!lamp_model_stands_alone(&model))
-            continue;
-        take_model(r, text, &model);
-        lamp_keys_described(r->keys, &tags[i]);
-    }
+    read_free_text(r, tags, tag_count);
     if (strange && r->lamp->source == GEO_SOURCE_UNKNOWN)
-        unread_in(r, "source of a lamp not understood", strange->value, strange->tag);
+        unread_in(r, "source of a lamp not understood", strange->value,
+                  strange->meaning.field == LAMP_FIELD_TYPE ? strange->tag : NULL);
 }
 
 /* A column of yes and no that says neither, nor anything of a lamp, is told of: there is taken to be one. */

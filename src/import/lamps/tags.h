@@ -102,6 +102,13 @@ typedef struct lamp_number {
     const char *end; /* behind it in the text */
 } lamp_number;
 
+/* ---- what was and what is (present.c) ---- */
+
+enum { LAMP_PRESENT = 256 };
+/* What text says of the lamp that is there, the rest blanked: of "HPS 70W replaced by LED 30W" the LED. False where it
+ * speaks of no other one, or is longer than LAMP_PRESENT: present is not to be read. */
+bool lamp_present(const char *text, char present[LAMP_PRESENT]);
+
 /* ---- free text (model.c) ---- */
 
 /* What a description of a lamp says ("HPS 250W AERO", "2x36W PL-L/830"). */
@@ -112,6 +119,8 @@ typedef struct lamp_model {
     lamp_choice choice, lumens_choice, kelvin_choice;
     bool unit, clear_unit; /* the watts name theirs; by a word that means nothing else where it stands */
     int clear;             /* how much a name of its source means that: 0 to 2 */
+    bool unclear;          /* LAMP_SOURCES_DIFFER */
+    bool strange;          /* it names no source, and has words that are not understood: "BF 125W" */
     bool plain;            /* it is the name of a source, with watts or without, and nothing else */
 } lamp_model;
 /* watts_column: a number without a unit is watts, wherever it stands. decimal: as in lamp_quantity. */
@@ -316,9 +325,11 @@ static inline bool lamp_has_word(const lamp_text *text, const char *wanted) {
 }
 
 /* Words in folded text (with blanks). Return -1 where none is found. */
-int lamp_source_word(const char *folded); /* geo_lamp.source */
-int lamp_type_word(const char *folded);   /* geo_lamp.type */
-int lamp_mount_word(const char *folded);  /* geo_lamp.mount */
+enum { LAMP_SOURCES_DIFFER = -2 };
+/* geo_lamp.source; LAMP_SOURCES_DIFFER: of several, one that there is not ("not LED"), or one that is planned. */
+int lamp_source_word(const char *folded);
+int lamp_type_word(const char *folded);  /* geo_lamp.type */
+int lamp_mount_word(const char *folded); /* geo_lamp.mount */
 bool lamp_inactive_word(const char *folded);
 bool lamp_absent_word(const char *folded); /* "no light", "pole only" */
 /* Kelvin for words of white and of sodium light, linear Rec.709 for others. */

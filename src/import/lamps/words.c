@@ -50,134 +50,244 @@ static const char *part_watts(const char *folded, char *to, size_t size) {
     return to;
 }
 
+/* Names of sources. Beside plain words: by Philips and Osram (SON, PL, CDM, CPO, HPL, QL, HQL, NAV, HQI), codes of
+ * ZVEI's LBS (HST, HIT, TC). Of those that begin with the same word the first counts. */
+static const word source_words[] = {
+    { "led*", GEO_SOURCE_LED },
+    { "light emitting diode", GEO_SOURCE_LED },
+    { "diode*", GEO_SOURCE_LED },
+    { "metal halide", GEO_SOURCE_METAL_HALIDE },
+    { "metal hal*", GEO_SOURCE_METAL_HALIDE },
+    { "mh", GEO_SOURCE_METAL_HALIDE },
+    { "hqi*", GEO_SOURCE_METAL_HALIDE },
+    { "cdm*", GEO_SOURCE_METAL_HALIDE },
+    { "cdo*", GEO_SOURCE_METAL_HALIDE },
+    { "cpo*", GEO_SOURCE_METAL_HALIDE },
+    { "hci*", GEO_SOURCE_METAL_HALIDE },
+    { "cmh*", GEO_SOURCE_METAL_HALIDE },
+    { "mhn*", GEO_SOURCE_METAL_HALIDE },
+    { "mbi", GEO_SOURCE_METAL_HALIDE },
+    { "cosmopolis", GEO_SOURCE_METAL_HALIDE },
+    { "halogenmetall*", GEO_SOURCE_METAL_HALIDE },
+    { "metallhalogen*", GEO_SOURCE_METAL_HALIDE },
+    { "metaalhalogen*", GEO_SOURCE_METAL_HALIDE },
+    { "ioduri", GEO_SOURCE_METAL_HALIDE },
+    { "monimetall*", GEO_SOURCE_METAL_HALIDE },
+    { "metalhalogen*", GEO_SOURCE_METAL_HALIDE },
+    { "multivapor*", GEO_SOURCE_METAL_HALIDE },
+    { "vapores metalicos", GEO_SOURCE_METAL_HALIDE },
+    { "metalldampf*", GEO_SOURCE_METAL_HALIDE },
+    { "halogen metall*", GEO_SOURCE_METAL_HALIDE },
+    { "metalohalogen*", GEO_SOURCE_METAL_HALIDE },
+    { "halogenur*", GEO_SOURCE_METAL_HALIDE },
+    { "iodure*", GEO_SOURCE_METAL_HALIDE },
+    { "alogenuri", GEO_SOURCE_METAL_HALIDE },
+    { "hit", GEO_SOURCE_METAL_HALIDE },
+    { "hie", GEO_SOURCE_METAL_HALIDE },
+    { "halogenuros", GEO_SOURCE_METAL_HALIDE },
+    { "halogenid*", GEO_SOURCE_METAL_HALIDE },
+    { "hpi*", GEO_SOURCE_METAL_HALIDE },
+    { "hps*", GEO_SOURCE_SODIUM },
+    { "lps*", GEO_SOURCE_SODIUM },
+    { "sodium", GEO_SOURCE_SODIUM },
+    { "sodio", GEO_SOURCE_SODIUM },
+    { "sod", GEO_SOURCE_SODIUM },
+    { "natrium*", GEO_SOURCE_SODIUM },
+    { "son", GEO_SOURCE_SODIUM },
+    { "sont", GEO_SOURCE_SODIUM },
+    { "sox*", GEO_SOURCE_SODIUM },
+    { "nav", GEO_SOURCE_SODIUM },
+    { "shp", GEO_SOURCE_SODIUM },
+    { "sbp", GEO_SOURCE_SODIUM },
+    { "vsbp", GEO_SOURCE_SODIUM },
+    { "sap", GEO_SOURCE_SODIUM },
+    { "vsap", GEO_SOURCE_SODIUM },
+    { "sodik*", GEO_SOURCE_SODIUM },
+    { "sodov*", GEO_SOURCE_SODIUM },
+    { "sodow*", GEO_SOURCE_SODIUM },
+    { "suurpainenatrium*", GEO_SOURCE_SODIUM },
+    { "pienpainenatrium*", GEO_SOURCE_SODIUM },
+    { "hogtrycksnatrium*", GEO_SOURCE_SODIUM },
+    { "lagtrycksnatrium*", GEO_SOURCE_SODIUM },
+    { "hoytrykknatrium*", GEO_SOURCE_SODIUM },
+    { "hoytrykksnatrium*", GEO_SOURCE_SODIUM },
+    { "lavtrykksnatrium*", GEO_SOURCE_SODIUM },
+    { "hojtryksnatrium*", GEO_SOURCE_SODIUM },
+    { "hogedruknatrium*", GEO_SOURCE_SODIUM },
+    { "lagedruknatrium*", GEO_SOURCE_SODIUM },
+    { "hst", GEO_SOURCE_SODIUM },
+    { "hse", GEO_SOURCE_SODIUM },
+    { "lst", GEO_SOURCE_SODIUM },
+    { "ballon fluo*", GEO_SOURCE_MERCURY },
+    { "mercury", GEO_SOURCE_MERCURY },
+    { "merc", GEO_SOURCE_MERCURY },
+    { "mbf*", GEO_SOURCE_MERCURY },
+    { "mv", GEO_SOURCE_MERCURY },
+    { "hme", GEO_SOURCE_MERCURY },
+    { "hpl*", GEO_SOURCE_MERCURY },
+    { "hql*", GEO_SOURCE_MERCURY },
+    { "quecksilber*", GEO_SOURCE_MERCURY },
+    { "elohope*", GEO_SOURCE_MERCURY },
+    { "kvicksilv*", GEO_SOURCE_MERCURY },
+    { "kvikksolv*", GEO_SOURCE_MERCURY },
+    { "kviksolv*", GEO_SOURCE_MERCURY },
+    { "kwik*", GEO_SOURCE_MERCURY },
+    { "mercure", GEO_SOURCE_MERCURY },
+    { "mercurio", GEO_SOURCE_MERCURY },
+    { "vmcc", GEO_SOURCE_MERCURY },
+    { "rtec*", GEO_SOURCE_MERCURY },
+    { "rtut*", GEO_SOURCE_MERCURY },
+    { "fluo*", GEO_SOURCE_FLUORESCENT },
+    { "leuchtstoff*", GEO_SOURCE_FLUORESCENT },
+    { "cfl", GEO_SOURCE_FLUORESCENT },
+    { "pll", GEO_SOURCE_FLUORESCENT },
+    { "tl", GEO_SOURCE_FLUORESCENT },
+    { "pl", GEO_SOURCE_FLUORESCENT },
+    { "plc", GEO_SOURCE_FLUORESCENT },
+    { "pls", GEO_SOURCE_FLUORESCENT },
+    { "plt", GEO_SOURCE_FLUORESCENT },
+    { "tld", GEO_SOURCE_FLUORESCENT },
+    { "tl5", GEO_SOURCE_FLUORESCENT },
+    { "tl8", GEO_SOURCE_FLUORESCENT },
+    { "tc", GEO_SOURCE_FLUORESCENT },
+    { "ql", GEO_SOURCE_FLUORESCENT },
+    { "induction", GEO_SOURCE_FLUORESCENT },
+    { "inductie", GEO_SOURCE_FLUORESCENT },
+    { "zarivk*", GEO_SOURCE_FLUORESCENT },
+    { "incandescen*", GEO_SOURCE_INCANDESCENT },
+    { "inc", GEO_SOURCE_INCANDESCENT },
+    { "halogen*", GEO_SOURCE_INCANDESCENT },
+    { "gluh*", GEO_SOURCE_INCANDESCENT },
+    { "gloei*", GEO_SOURCE_INCANDESCENT },
+    { "tungsten", GEO_SOURCE_INCANDESCENT },
+    { "gas", GEO_SOURCE_GAS },
+    { "gaslight*", GEO_SOURCE_GAS },
+    { "gaslamp*", GEO_SOURCE_GAS },
+    { "gasleucht*", GEO_SOURCE_GAS },
+    { "gaslatern*", GEO_SOURCE_GAS },
+    { "gaslantern*", GEO_SOURCE_GAS },
+    { "gaz", GEO_SOURCE_GAS },
+};
+
+enum { MOST_NAMES = 8 };
+
+/* A source that a text names. */
+typedef struct source_name {
+    int source;
+    const char *at, *end; /* in the text */
+} source_name;
+
+/* Behind the pattern where it stands at p, the beginning of a word; NULL: it does not. */
+static const char *behind_pattern(const char *p, const char *pattern) {
+    size_t n = strlen(pattern);
+    bool prefix = pattern[n - 1] == '*';
+    n -= prefix;
+    if (strncmp(p, pattern, n) != 0 || (!prefix && p[n] && p[n] != ' '))
+        return NULL;
+    return p + n + strcspn(p + n, " ");
+}
+
+/* The names in their order; returns how many, MOST_NAMES at most. */
+static size_t find_names(const char *folded, source_name names[MOST_NAMES]) {
+    size_t count = 0;
+    for (const char *p = folded, *end; *p && count < MOST_NAMES; p = end + (*end == ' ')) {
+        end = NULL;
+        for (size_t i = 0; i < NOC_COUNT(source_words) && !end; i++)
+            if ((end = *p == *source_words[i].text ? behind_pattern(p, source_words[i].text) : NULL))
+                names[count++] = (source_name){ source_words[i].value, p, end };
+        end = end ? end : p + strcspn(p, " ");
+    }
+    return count;
+}
+
+/* Is the word that ends at `end` one of these? *from: its beginning. */
+static bool ends_with_word(const char *folded, const char *end, const char *const *words, size_t count,
+                           const char **from) {
+    const char *p = end;
+    while (p > folded && p[-1] != ' ')
+        p--;
+    *from = p;
+    for (size_t i = 0; i < count && p < end; i++)
+        if (strlen(words[i]) == (size_t)(end - p) && !strncmp(p, words[i], (size_t)(end - p)))
+            return true;
+    return false;
+}
+
+/* "not LED", "kein LED", "LED: no". */
+static bool is_denied(const char *folded, const source_name *name) {
+    static const char *const nots[] = { "not",  "no",  "non", "kein", "keine", "keinen", "nicht",  "geen",   "niet",
+                                        "pas",  "sin", "bez", "ohne", "sans",  "zonder", "senza",  "sem",    "ikke",
+                                        "inte", "ej",  "ei",  "nie",  "nao",   "never",  "except", "without" };
+    static const char *const articles[] = { "a",     "an",  "the", "yet", "ein", "eine",
+                                            "einen", "een", "un",  "une", "de",  "d" };
+    static const char *const noes[] = { "no", "nein", "nee", "non", "nej", "nie", "ne", "false" };
+    const char *from, *end = name->at > folded ? name->at - 1 : folded;
+    while (ends_with_word(folded, end, articles, NOC_COUNT(articles), &from))
+        end = from > folded ? from - 1 : folded;
+    if (ends_with_word(folded, end, nots, NOC_COUNT(nots), &from))
+        return true;
+    for (size_t i = 0; i < NOC_COUNT(noes) && *name->end; i++)
+        if (!strcmp(name->end + 1, noes[i]))
+            return true;
+    return false;
+}
+
+static bool holds_any(const lamp_text *text, const char *const *words, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (lamp_has_word(text, words[i]))
+            return true;
+    return false;
+}
+
+/* Sodium at low pressure or at high, by the words beside it. */
+static int sodium_of(const char *folded) {
+    static const char *const low[] = { "low pressure", "lps*",         "sox*",      "lst",       "sbp",
+                                       "vsbp",         "niederdruck*", "lagedruk*", "lage druk", "basse pression",
+                                       "baja presion", "pienpaine*",   "lagtryck*", "lavtrykk*", "bassa pressione" };
+    static const char *const high[] = {
+        "high pressure", "hps*",       "son",       "sont",       "nav",       "shp",           "sap",
+        "vsap",          "hst",        "hse",       "hochdruck*", "hogedruk*", "hoge druk",     "haute pression",
+        "alta presion",  "suurpaine*", "hogtryck*", "hoytrykk*",  "hojtryk*",  "alta pressione"
+    };
+    lamp_text text = lamp_text_of(folded);
+    bool is_low = holds_any(&text, low, NOC_COUNT(low)), is_high = holds_any(&text, high, NOC_COUNT(high));
+    return is_low && is_high ? LAMP_SOURCES_DIFFER : is_low ? GEO_SOURCE_LOW_SODIUM : GEO_SOURCE_SODIUM;
+}
+
+/* All discharge is in gas, and mercury lamps are fluorescent, too: the more exact of two words; -1: they differ. */
+static int more_exact(int a, int b) {
+    bool discharge = b == GEO_SOURCE_SODIUM || b == GEO_SOURCE_MERCURY || b == GEO_SOURCE_METAL_HALIDE;
+    if (a == b || (b == GEO_SOURCE_MERCURY && a == GEO_SOURCE_FLUORESCENT))
+        return b;
+    return a == GEO_SOURCE_GAS && (discharge || b == GEO_SOURCE_FLUORESCENT) ? b : -1;
+}
+
+/* The one source that these names mean together. */
+static int one_source(const source_name *names, size_t count) {
+    int source = names[0].source;
+    for (size_t i = 1; i < count && source >= 0; i++) {
+        int a = source, b = names[i].source;
+        source = NOC_MAX(more_exact(a, b), more_exact(b, a));
+    }
+    return source < 0 ? LAMP_SOURCES_DIFFER : source;
+}
+
 int lamp_source_word(const char *folded) {
-    /* beside plain words: names by Philips and Osram (SON, PL, CDM, CPO, HPL, QL, HQL, NAV, HQI), codes of ZVEI's LBS
-     * (HST, HIT, TC) */
-    static const word words[] = {
-        { "led*", GEO_SOURCE_LED },
-        { "light emitting diode", GEO_SOURCE_LED },
-        { "diode*", GEO_SOURCE_LED },
-        { "metal halide", GEO_SOURCE_METAL_HALIDE },
-        { "metal hal*", GEO_SOURCE_METAL_HALIDE },
-        { "mh", GEO_SOURCE_METAL_HALIDE },
-        { "hqi*", GEO_SOURCE_METAL_HALIDE },
-        { "cdm*", GEO_SOURCE_METAL_HALIDE },
-        { "cdo*", GEO_SOURCE_METAL_HALIDE },
-        { "cpo*", GEO_SOURCE_METAL_HALIDE },
-        { "hci*", GEO_SOURCE_METAL_HALIDE },
-        { "cmh*", GEO_SOURCE_METAL_HALIDE },
-        { "mhn*", GEO_SOURCE_METAL_HALIDE },
-        { "mbi", GEO_SOURCE_METAL_HALIDE },
-        { "cosmopolis", GEO_SOURCE_METAL_HALIDE },
-        { "halogenmetall*", GEO_SOURCE_METAL_HALIDE },
-        { "metallhalogen*", GEO_SOURCE_METAL_HALIDE },
-        { "metaalhalogen*", GEO_SOURCE_METAL_HALIDE },
-        { "ioduri", GEO_SOURCE_METAL_HALIDE },
-        { "monimetall*", GEO_SOURCE_METAL_HALIDE },
-        { "metalhalogen*", GEO_SOURCE_METAL_HALIDE },
-        { "multivapor*", GEO_SOURCE_METAL_HALIDE },
-        { "vapores metalicos", GEO_SOURCE_METAL_HALIDE },
-        { "metalldampf*", GEO_SOURCE_METAL_HALIDE },
-        { "halogen metall*", GEO_SOURCE_METAL_HALIDE },
-        { "metalohalogen*", GEO_SOURCE_METAL_HALIDE },
-        { "halogenur*", GEO_SOURCE_METAL_HALIDE },
-        { "iodure*", GEO_SOURCE_METAL_HALIDE },
-        { "alogenuri", GEO_SOURCE_METAL_HALIDE },
-        { "hit", GEO_SOURCE_METAL_HALIDE },
-        { "hie", GEO_SOURCE_METAL_HALIDE },
-        { "halogenuros", GEO_SOURCE_METAL_HALIDE },
-        { "halogenid*", GEO_SOURCE_METAL_HALIDE },
-        { "hpi*", GEO_SOURCE_METAL_HALIDE },
-        { "hps*", GEO_SOURCE_SODIUM },
-        { "lps*", GEO_SOURCE_SODIUM },
-        { "sodium", GEO_SOURCE_SODIUM },
-        { "sodio", GEO_SOURCE_SODIUM },
-        { "sod", GEO_SOURCE_SODIUM },
-        { "natrium*", GEO_SOURCE_SODIUM },
-        { "son", GEO_SOURCE_SODIUM },
-        { "sont", GEO_SOURCE_SODIUM },
-        { "sox*", GEO_SOURCE_SODIUM },
-        { "nav", GEO_SOURCE_SODIUM },
-        { "shp", GEO_SOURCE_SODIUM },
-        { "sbp", GEO_SOURCE_SODIUM },
-        { "vsbp", GEO_SOURCE_SODIUM },
-        { "sap", GEO_SOURCE_SODIUM },
-        { "vsap", GEO_SOURCE_SODIUM },
-        { "sodik*", GEO_SOURCE_SODIUM },
-        { "sodov*", GEO_SOURCE_SODIUM },
-        { "sodow*", GEO_SOURCE_SODIUM },
-        { "suurpainenatrium*", GEO_SOURCE_SODIUM },
-        { "pienpainenatrium*", GEO_SOURCE_SODIUM },
-        { "hogtrycksnatrium*", GEO_SOURCE_SODIUM },
-        { "lagtrycksnatrium*", GEO_SOURCE_SODIUM },
-        { "hoytrykknatrium*", GEO_SOURCE_SODIUM },
-        { "hoytrykksnatrium*", GEO_SOURCE_SODIUM },
-        { "lavtrykksnatrium*", GEO_SOURCE_SODIUM },
-        { "hojtryksnatrium*", GEO_SOURCE_SODIUM },
-        { "hogedruknatrium*", GEO_SOURCE_SODIUM },
-        { "lagedruknatrium*", GEO_SOURCE_SODIUM },
-        { "hst", GEO_SOURCE_SODIUM },
-        { "hse", GEO_SOURCE_SODIUM },
-        { "lst", GEO_SOURCE_SODIUM },
-        { "ballon fluo*", GEO_SOURCE_MERCURY },
-        { "mercury", GEO_SOURCE_MERCURY },
-        { "merc", GEO_SOURCE_MERCURY },
-        { "mbf*", GEO_SOURCE_MERCURY },
-        { "mv", GEO_SOURCE_MERCURY },
-        { "hme", GEO_SOURCE_MERCURY },
-        { "hpl*", GEO_SOURCE_MERCURY },
-        { "hql*", GEO_SOURCE_MERCURY },
-        { "quecksilber*", GEO_SOURCE_MERCURY },
-        { "elohope*", GEO_SOURCE_MERCURY },
-        { "kvicksilv*", GEO_SOURCE_MERCURY },
-        { "kvikksolv*", GEO_SOURCE_MERCURY },
-        { "kviksolv*", GEO_SOURCE_MERCURY },
-        { "kwik*", GEO_SOURCE_MERCURY },
-        { "mercure", GEO_SOURCE_MERCURY },
-        { "mercurio", GEO_SOURCE_MERCURY },
-        { "vmcc", GEO_SOURCE_MERCURY },
-        { "rtec*", GEO_SOURCE_MERCURY },
-        { "rtut*", GEO_SOURCE_MERCURY },
-        { "fluo*", GEO_SOURCE_FLUORESCENT },
-        { "leuchtstoff*", GEO_SOURCE_FLUORESCENT },
-        { "cfl", GEO_SOURCE_FLUORESCENT },
-        { "pll", GEO_SOURCE_FLUORESCENT },
-        { "tl", GEO_SOURCE_FLUORESCENT },
-        { "pl", GEO_SOURCE_FLUORESCENT },
-        { "plc", GEO_SOURCE_FLUORESCENT },
-        { "pls", GEO_SOURCE_FLUORESCENT },
-        { "plt", GEO_SOURCE_FLUORESCENT },
-        { "tld", GEO_SOURCE_FLUORESCENT },
-        { "tl5", GEO_SOURCE_FLUORESCENT },
-        { "tl8", GEO_SOURCE_FLUORESCENT },
-        { "tc", GEO_SOURCE_FLUORESCENT },
-        { "ql", GEO_SOURCE_FLUORESCENT },
-        { "induction", GEO_SOURCE_FLUORESCENT },
-        { "inductie", GEO_SOURCE_FLUORESCENT },
-        { "zarivk*", GEO_SOURCE_FLUORESCENT },
-        { "incandescen*", GEO_SOURCE_INCANDESCENT },
-        { "inc", GEO_SOURCE_INCANDESCENT },
-        { "halogen*", GEO_SOURCE_INCANDESCENT },
-        { "gluh*", GEO_SOURCE_INCANDESCENT },
-        { "gloei*", GEO_SOURCE_INCANDESCENT },
-        { "tungsten", GEO_SOURCE_INCANDESCENT },
-        { "gas", GEO_SOURCE_GAS },
-        { "gaslight*", GEO_SOURCE_GAS },
-        { "gaslamp*", GEO_SOURCE_GAS },
-        { "gasleucht*", GEO_SOURCE_GAS },
-        { "gaslatern*", GEO_SOURCE_GAS },
-        { "gaslantern*", GEO_SOURCE_GAS },
-        { "gaz", GEO_SOURCE_GAS },
-    };
-    static const word low[] = {
-        { "low pressure", 1 }, { "lps*", 1 },         { "sox*", 1 },      { "lst", 1 },       { "sbp", 1 },
-        { "vsbp", 1 },         { "niederdruck*", 1 }, { "lagedruk*", 1 }, { "lage druk", 1 }, { "basse pression", 1 },
-        { "baja presion", 1 }, { "pienpaine*", 1 },   { "lagtryck*", 1 }, { "lavtrykk*", 1 }, { "bassa pressione", 1 }
-    };
+    static const char *const later[] = { "planned", "proposed", "geplant*", "vorgesehen*", "gepland*" };
     char parted[300];
+    source_name names[MOST_NAMES];
     folded = part_watts(folded, parted, sizeof(parted));
-    int source = find_word(folded, words, NOC_COUNT(words));
-    return source == GEO_SOURCE_SODIUM && find_word(folded, low, NOC_COUNT(low)) > 0 ? GEO_SOURCE_LOW_SODIUM : source;
+    size_t count = find_names(folded, names);
+    if (!count)
+        return -1;
+    for (size_t i = 0; i < count; i++)
+        if (is_denied(folded, &names[i]))
+            return LAMP_SOURCES_DIFFER;
+    lamp_text text = lamp_text_of(folded);
+    if (holds_any(&text, later, NOC_COUNT(later)))
+        return LAMP_SOURCES_DIFFER;
+    int source = one_source(names, count);
+    return source == GEO_SOURCE_SODIUM ? sodium_of(folded) : source;
 }
 
 int lamp_type_word(const char *folded) {
