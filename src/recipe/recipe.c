@@ -55,6 +55,8 @@ noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const ch
     const char *text = recipe_text(key), *nearest = noc_text_nearest(text, words, count);
     char shown[64];
     noc_text_clean(shown, sizeof(shown), text);
+    if (!strcmp(text, "<<"))
+        return recipe_wrong(f, key, "merge keys (<<) are not read: write the keys out in %s", where);
     return nearest ? recipe_wrong(f, key, "no key %s in %s; is it %s?", shown, where, nearest)
                    : recipe_wrong(f, key, "no key %s in %s", shown, where);
 }

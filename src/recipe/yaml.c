@@ -12,6 +12,7 @@
 #define MOST_READ (4 * MOST_BYTES) /* with what aliases repeat */
 #define MOST_DEPTH 32              /* of lists in lists: libyaml's time grows with its square */
 #define MOST_TEXTS 100000          /* of a list */
+#define MOST_ANCHORS 1000          /* libyaml compares each name with all others */
 
 noc_status recipe_wrong(const recipe_file *f, const yaml_node_t *node, const char *fmt, ...) {
     char text[400];
@@ -80,20 +81,62 @@ static noc_status no_yaml(const recipe_file *f, const yaml_parser_t *parser) {
                      parser->problem ? parser->problem : "cannot be read");
 }
 
-/* Goes through all of it, and stops where it is too deep. */
-static noc_status check_depth(const recipe_file *f, yaml_parser_t *parser) {
-    for (int depth = 0, done = 0; !done;) {
+/* Returns true if the event names an anchor; *tag gets its explicit tag, NULL: none. */
+static bool has_anchor(const yaml_event_t *event, const char **tag) {
+    const yaml_char_t *anchor = NULL, *of = NULL;
+    if (event->type == YAML_SCALAR_EVENT) {
+        anchor = event->data.scalar.anchor;
+        of = event->data.scalar.tag;
+    } else if (event->type == YAML_SEQUENCE_START_EVENT) {
+        anchor = event->data.sequence_start.anchor;
+        of = event->data.sequence_start.tag;
+    } else if (event->type == YAML_MAPPING_START_EVENT) {
+        anchor = event->data.mapping_start.anchor;
+        of = event->data.mapping_start.tag;
+    }
+    *tag = (const char *)of;
+    return anchor != NULL;
+}
+
+/* The types of YAML's core schema: values are read by their options in any case. */
+static bool is_core_tag(const char *tag) {
+    static const char *const core[] = { "str", "int", "float", "bool", "null", "seq", "map" };
+    static const char prefix[] = "tag:yaml.org,2002:";
+    bool is = !strcmp(tag, "!");
+    for (size_t i = 0; i < NOC_COUNT(core); i++)
+        is = is || (!strncmp(tag, prefix, strlen(prefix)) && !strcmp(tag + strlen(prefix), core[i]));
+    return is;
+}
+
+static noc_status check_event(const recipe_file *f, const yaml_event_t *event, int depth, int *anchors) {
+    const char *tag;
+    size_t line = event->start_mark.line + 1;
+    *anchors += has_anchor(event, &tag);
+    if (depth > MOST_DEPTH)
+        return noc_error(f->log, NOC_ERR_FORMAT, "%.400s:%zu: lists in lists, more than %d deep", f->path, line,
+                         MOST_DEPTH);
+    if (*anchors > MOST_ANCHORS)
+        return noc_error(f->log, NOC_ERR_FORMAT, "%.400s:%zu: more than %d anchors (&), which no recipe has", f->path,
+                         line, MOST_ANCHORS);
+    if (tag && !is_core_tag(tag))
+        return noc_error(f->log, NOC_ERR_FORMAT, "%.400s:%zu: the tag %.100s is not read: write the value without it",
+                         f->path, line, tag);
+    return NOC_OK;
+}
+
+/* Goes through all of it, and stops at what would take long or be misread. */
+static noc_status check_events(const recipe_file *f, yaml_parser_t *parser) {
+    for (int depth = 0, anchors = 0, done = 0; !done;) {
         yaml_event_t event;
         if (!yaml_parser_parse(parser, &event))
             return no_yaml(f, parser);
         depth += event.type == YAML_SEQUENCE_START_EVENT || event.type == YAML_MAPPING_START_EVENT;
         depth -= event.type == YAML_SEQUENCE_END_EVENT || event.type == YAML_MAPPING_END_EVENT;
         done = event.type == YAML_STREAM_END_EVENT;
-        size_t line = event.start_mark.line + 1;
+        noc_status status = check_event(f, &event, depth, &anchors);
         yaml_event_delete(&event);
-        if (depth > MOST_DEPTH)
-            return noc_error(f->log, NOC_ERR_FORMAT, "%.400s:%zu: lists in lists, more than %d deep", f->path, line,
-                             MOST_DEPTH);
+        if (status)
+            return status;
     }
     return NOC_OK;
 }
@@ -119,7 +162,7 @@ static noc_status with_parser(recipe_file *f, const char *text, size_t size, boo
     if (noc_allocation_refused() || !yaml_parser_initialize(&parser))
         return noc_no_memory(f->log, f->path);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
-    noc_status status = nodes ? read_nodes(f, &parser) : check_depth(f, &parser);
+    noc_status status = nodes ? read_nodes(f, &parser) : check_events(f, &parser);
     yaml_parser_delete(&parser);
     return status;
 }

@@ -286,6 +286,8 @@ static const struct {
     { HEAD "windows: [1]\n", 3, "windows must be keys" },
     { HEAD "windows: maybe\n", 3, "neither true nor false" },
     { HEAD "lamps: off\n", 3, "lamps must be keys" },
+    { HEAD "name: !!binary aGk=\n", 3, "the tag tag:yaml.org,2002:binary is not read" },
+    { HEAD "cameras: {a: &a {view: own}, b: {<<: *a}}\n", 3, "merge keys (<<) are not read: write the keys out" },
     { HEAD "lod: 7\n", 3, "lod: \"7\" is outside 0 to 4" },
     { HEAD "lod: two\n", 3, "lod: \"two\" is not" },
     { HEAD "\n# remark\nwidht: 3\n", 5, "no key widht in a recipe; is it width?" },
@@ -456,6 +458,24 @@ static void test_aliases_are_counted(void **state) {
     free(text);
 }
 
+/* libyaml takes time by the square of their number: 110,000 of them took 28 s. */
+static void test_anchors_are_limited(void **state) {
+    (void)state;
+    enum { ROOM = 40000 };
+    noc_recipe *r;
+    char *text = malloc(ROOM);
+    for (int anchors = 1000; anchors <= 1001; anchors++) {
+        size_t n = (size_t)snprintf(text, ROOM, "nocturne: 1\ninputs:\n");
+        for (int i = 0; i < anchors; i++)
+            n += (size_t)snprintf(text + n, ROOM - n, "  - &a%d x\n", i);
+        assert_int_equal(load(text, &r), anchors == 1000 ? NOC_OK : NOC_ERR_FORMAT);
+        if (anchors > 1000)
+            assert_non_null(strstr(last_error, ":1003: more than 1000 anchors"));
+        noc_recipe_destroy(r);
+    }
+    free(text);
+}
+
 static void test_memory_refused(void **state) {
     (void)state;
     noc_log *log = counting_log();
@@ -542,6 +562,7 @@ int main(void) {
         cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
         cmocka_unit_test(test_a_bomb_is_an_error_at_once),
         cmocka_unit_test(test_aliases_are_counted),
+        cmocka_unit_test(test_anchors_are_limited),
         cmocka_unit_test(test_memory_refused),
         cmocka_unit_test(test_writing_refused),
     };
