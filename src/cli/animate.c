@@ -59,6 +59,7 @@ typedef struct animation {
     int pictures, segment, warm_up;
     char *film, *ffmpeg; /* NULL: none is made */
     bool filmed;         /* it is there */
+    char *folder;        /* of the film's pictures, that was made; NULL: none was */
     bool *kept;          /* by picture of this part: it is there already */
     int mine;            /* pictures of this part */
     int kept_count, made;
@@ -335,16 +336,30 @@ static void plan_film(animation *a) {
     a->film = NULL;
 }
 
-/* The folder of a film's pictures. */
-static noc_status make_folder(const animation *a) {
+/* The folder of a film's pictures. An interruption leaves none that is empty, unless other parts may use it. */
+static noc_status make_folder(animation *a) {
     if (!cli_is_film(a->job->args->output))
         return NOC_OK;
     char *folder = cli_format("%.*s", (int)strlen(a->series.prefix) - 1, a->series.prefix);
-    noc_status status = mkdir(folder, 0777) && errno != EEXIST ? NOC_ERR_IO : NOC_OK;
+    bool made = !mkdir(folder, 0777);
+    noc_status status = !made && errno != EEXIST ? NOC_ERR_IO : NOC_OK;
     if (status)
         cli_error("%s: cannot be made: %s", folder, strerror(errno));
-    free(folder);
+    if (made && a->args->part.count == 1) {
+        cli_leave_nothing_at(folder);
+        a->folder = folder;
+    } else {
+        free(folder);
+    }
     return status;
+}
+
+static void leave_no_folder(animation *a) {
+    if (!a->folder)
+        return;
+    cli_leave_nothing_at(NULL);
+    rmdir(a->folder); /* which fails where there are pictures in it */
+    free(a->folder);
 }
 
 /* Pictures of a film alone go when it is there. */
@@ -596,6 +611,7 @@ int cli_animate(render_job *job) {
             cli_print_stats(job);
         ending = cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
+    leave_no_folder(&a);
     noc_camera_path_destroy(a.path);
     cli_series_free(&a.series);
     free(a.film);

@@ -52,6 +52,14 @@ long='builtin:city --city-size 150 --size 4000x4000 --method reference --rays 10
 interrupt INT 'triangles' render $long -v -o c.png
 test $status = 130 && grep -q 'interrupted: .* nothing was saved' err && test ! -e c.png
 result $? "before the first frame nothing is saved"
+mkdir bin && printf '#!/bin/sh\n' >bin/ffmpeg && chmod +x bin/ffmpeg
+(PATH=$PWD/bin:$PATH
+    start render $long --animate --exposure 3 -o film.mp4
+    until test -d film-frames || ! kill -0 $pid 2>/dev/null; do sleep 0.1; done
+    test -d film-frames && kill -INT $pid
+    wait $pid)
+test $? = 130 && test ! -e film-frames; result $? "nor is a film's folder left without a picture"
+rm -r bin
 test "$(ls)" = "a.png
 b.exr
 err
