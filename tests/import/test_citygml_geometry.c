@@ -206,6 +206,75 @@ static void test_containers(void **state) {
     assert_int_equal(geo_issues_count(sink.sink.issues), 0);
 }
 
+/* What is not read is counted with the object that holds it, beside what is. */
+static void test_unread(void **state) {
+    (void)state;
+#define GOOD POLYGON("p", "0 0 5 1 0 5 1 1 5 0 0 5")
+#define UNREAD "geometry that is not read"
+    static const struct {
+        const char *content, *example; /* example NULL: nothing is lost */
+        size_t polygons;
+    } cases[] = {
+        { SURFACES(GOOD "</g:surfaceMember><g:surfaceMember><g:Cylinder><g:pos>1 2 3</g:pos></g:Cylinder>"),
+          "Cylinder of B", 1 },
+        { "<g:Cone/>", "Cone of B", 0 },
+        { "<v:Pipe xmlns:v='http://example.invalid/v'/>" SURFACES(GOOD), "Pipe of B", 1 },
+        { SURFACES(GOOD) "<g:Tin><g:trianglePatches/><g:controlPoint><g:posList>0 0 0 1 0 0 1 1 0</g:posList>"
+                         "</g:controlPoint></g:Tin>",
+          "Tin of control points of B", 1 },
+        { "<g:Tin><g:controlPoint><g:posList>0 0 0 1 0 0 1 1 0</g:posList></g:controlPoint></g:Tin>",
+          "Tin of control points of B", 0 },
+        { "<g:MultiSurface><g:description>ours</g:description>" MEMBERS(GOOD) "</g:MultiSurface>", NULL, 1 },
+        { "<g:MultiGeometry><g:geometryMember><g:CompositeCurve/></g:geometryMember></g:MultiGeometry>" SURFACES(GOOD),
+          NULL, 1 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        const char *reason, *examples = "";
+        bool repaired;
+        size_t count = 0;
+        if (read_surfaces(cases[i].content) != cases[i].polygons || city_issue(&sink, UNREAD) != !!cases[i].example)
+            fail_msg("%zu: %zu polygons, %zu counted", i, sink.polygons.len, city_issue(&sink, UNREAD));
+        for (size_t k = 0; cases[i].example && k < geo_issues_count(sink.sink.issues); k++)
+            if (geo_issues_get(sink.sink.issues, k, &reason, &repaired, &count, &examples) && !strcmp(reason, UNREAD))
+                assert_string_equal(examples, cases[i].example);
+    }
+    assert_int_equal(read_surfaces(SURFACES("<g:Polygon><g:exterior><g:Ring><g:curveMember><g:Curve><g:segments>"
+                                            "<g:ArcByBulge/><g:LineStringSegment><g:posList>0 0 0 4 0 0 4 3 0 0 0 0"
+                                            "</g:posList></g:LineStringSegment></g:segments></g:Curve></g:curveMember>"
+                                            "</g:Ring></g:exterior></g:Polygon>")),
+                     1);
+    assert_int_equal(city_issue(&sink, "curve of a ring that is not read"), 1);
+}
+
+/* A surface without heights lies where its object begins, not at 0. */
+static void test_heights_of_others(void **state) {
+    (void)state;
+#define HIGH3D POLYGON("high", "0 0 300 4 0 300 4 3 310 0 0 300")
+#define FLAT2D "<g:posList srsDimension='2'>0 0 4 0 4 3 0 0</g:posList>"
+    const double flat[] = { 0, 0, 300, 4, 0, 300, 4, 3, 300 };
+    static const char reason[] = "surface without heights: put at the lowest height of its object";
+    assert_int_equal(read_surfaces(IN_POLYGON(FLAT2D) SURFACES(HIGH3D)), 2);
+    expect_points(city_find(&sink, "p"), 3, flat);
+    assert_int_equal(city_issue(&sink, reason), 1);
+    assert_int_equal(read_surfaces(SURFACES(HIGH3D) IN_POLYGON("<g:pos>0 0</g:pos><g:pos>4 0</g:pos><g:pos>4 3</g:pos>"
+                                                               "<g:pos>0 0</g:pos>")),
+                     2);
+    expect_points(city_find(&sink, "p"), 3, flat);
+    assert_int_equal(read_surfaces(IN_POLYGON(FLAT2D)), 1); /* alone: the terrain tells, once all is there */
+    assert_int_equal(city_issue(&sink, reason), 0);
+    assert_int_equal(read_surfaces(IN_POLYGON("<g:pos>0 0</g:pos><g:pos>4 0 300</g:pos><g:pos>4 3 300</g:pos>")
+                                       SURFACES(HIGH3D)),
+                     1);
+    assert_int_equal(city_issue(&sink, "ring whose points have no heights, beside others"), 1);
+    const char *terrain = MODEL(MEMBER("<d:ReliefFeature><d:reliefComponent><d:TINRelief g:id='T'><d:tin>"
+                                       "<g:TriangulatedSurface><g:trianglePatches><g:Triangle><g:exterior>"
+                                       "<g:LinearRing>" FLAT2D "</g:LinearRing></g:exterior></g:Triangle>"
+                                       "</g:trianglePatches></g:TriangulatedSurface></d:tin></d:TINRelief>"
+                                       "</d:reliefComponent></d:ReliefFeature>"));
+    assert_int_equal(city_read_bytes(&sink, terrain, strlen(terrain), 3), NOC_OK);
+    assert_int_equal(city_issue(&sink, "terrain without heights: put at 0"), 1);
+}
+
 static void test_rings_of_curves(void **state) {
     (void)state;
     const double joined[] = { 0, 0, 0, 4, 0, 0, 4, 0, 0, 4, 3, 0 };
@@ -336,6 +405,8 @@ int main(void) {
         T(test_holes),
         T(test_compact),
         T(test_containers),
+        T(test_unread),
+        T(test_heights_of_others),
         T(test_rings_of_curves),
         T(test_orientation),
         T(test_terrain),

@@ -122,9 +122,10 @@ typedef struct cg_polygon {
     const char *id; /* NULL if none */
     uint32_t srs;   /* index into parser.srs, CG_NONE if none applies */
     uint32_t ring_count;
+    bool flat;      /* without heights: they are 0 until cg_fill_heights */
     uint32_t shown; /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
     const size_t *ring_size;
-    const double *xyz;          /* 3 a point, in the file's tuple order */
+    double *xyz;                /* 3 a point, in the file's tuple order */
     const float *uv;            /* 2 a point, in the image of its texture; NULL where it has none */
     uint32_t texture, material; /* looks that the file gives it: cg_looks; 0: none */
     struct cg_polygon *copy;    /* in the store, NULL if none: one, however many ids lead to it */
@@ -280,6 +281,8 @@ typedef struct cg_frame {
     uint32_t feature, geometry, srs;
     uint32_t dimension;     /* srsDimension, 0 where not given */
     uint32_t first_surface; /* of an element with an id */
+    size_t first_polygon;   /* of cg_parser.polygons */
+    bool of_points;         /* a Tin's control points are in it */
     const char *id;
 } cg_frame;
 
@@ -317,6 +320,9 @@ typedef struct cg_parser {
     const char *polygon_id;
     NOC_ARRAY(char) terrain_id; /* ids of triangles must not pile up in the arena */
     bool in_polygon, in_ring, ring_exterior, has_exterior;
+    size_t polygons;           /* begun so far */
+    bool polygon_flat;         /* its rings have no heights */
+    bool ring_flat, ring_high; /* points of the ring without heights, and with them */
     bool polygon_counted;      /* a fault of one of its rings has been reported */
     NOC_ARRAY(char) ring_id;   /* of the ring, "" if none */
     NOC_ARRAY(float) ring_uv;  /* of the polygon's rings, as far as they have any */
@@ -458,6 +464,14 @@ void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip);
 void cg_select(cg_parser *p);                                                       /* level of detail, what is shown */
 int cg_function_class(const cg_feature_type *type, const char *word, bool plateau); /* noc_class or -1 */
 bool cg_standard_function(const char *word); /* a code of the standard's list for city furniture */
+
+/* unread.c */
+/* Counts an element that is not read, where it is an object or of a geometry. parent may be NULL. */
+void cg_unread(cg_parser *p, const cg_frame *frame, cg_frame *parent, const char *name);
+/* An aggregate has ended: counts a Tin of points alone. */
+void cg_tin_end(cg_parser *p, const cg_frame *frame);
+/* Gives surfaces without heights the lowest one of those of the object that have some, and counts them. */
+void cg_fill_heights(cg_parser *p);
 
 /* emit.c */
 void cg_object_end(cg_parser *p); /* a top-level object is complete */

@@ -390,6 +390,7 @@ void cg_object_end(cg_parser *p) {
             left_out(p, "");
         cg_emit_end(p);
     } else {
+        cg_fill_heights(p);
         finish_object(p);
     }
     cg_object_clear(&p->object);

@@ -353,13 +353,6 @@ static void start_word(cg_parser *p, const attributes *a) {
     snprintf(p->uom, sizeof(p->uom), "%s", a->uom ? a->uom : "");
 }
 
-/* Foreign objects are fine in a model, but a person should hear of them. */
-static bool skip_foreign(cg_parser *p, const cg_frame *frame, const cg_frame *parent, const char *name) {
-    if (parent && parent->name.code == CG_MEMBER && frame->feature == CG_NONE)
-        cg_issue(p, GEO_SKIPPED, "object type that is not read", cg_local_name(name));
-    return false;
-}
-
 static bool start_exterior(cg_parser *p, const cg_frame *frame, const attributes *a) {
     if (p->in_polygon || frame->geometry == CG_NONE)
         return p->in_polygon;
@@ -369,16 +362,16 @@ static bool start_exterior(cg_parser *p, const cg_frame *frame, const attributes
 }
 
 /* Returns false to skip the element with all in it. */
-static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const char *name, const XML_Char **list) {
+static bool enter(cg_parser *p, cg_frame *frame, cg_frame *parent, const char *name, const XML_Char **list) {
     cg_code code = frame->name.code;
-    if (code == CG_FOREIGN)
-        return skip_foreign(p, frame, parent, name);
+    bool plain = code == CG_PLAIN && parent && parent->name.code == CG_MEMBER && frame->name.version;
+    if (code == CG_FOREIGN || plain) {
+        cg_unread(p, frame, parent, name);
+        return false;
+    }
     attributes a = read_attributes(list);
     bool in_geometry = frame->geometry != CG_NONE;
     switch (code) {
-    case CG_PLAIN:
-        return parent && parent->name.code == CG_MEMBER && frame->name.version ? skip_foreign(p, frame, parent, name)
-                                                                               : true;
     case CG_FEATURE: return start_feature(p, frame, &a);
     case CG_GEOMETRY_PROPERTY: return start_geometry_property(p, frame, &a);
     case CG_FUNCTION:
@@ -453,10 +446,12 @@ void cg_start_element(void *user, const XML_Char *name, const XML_Char **list) {
         p->skip++;
         return;
     }
-    const cg_frame *parent = p->depth ? &p->frames[p->depth - 1] : NULL;
+    cg_frame *parent = p->depth ? &p->frames[p->depth - 1] : NULL;
     cg_frame *frame = &p->frames[p->depth++];
     *frame = parent ? *parent : (cg_frame){ .feature = CG_NONE, .geometry = CG_NONE, .srs = CG_NONE };
     frame->id = NULL;
+    frame->of_points = false;
+    frame->first_polygon = p->polygons;
     frame->name = cg_names_get(&p->names, name);
     p->text = CG_TEXT_NONE;
     if (!parent && !start_root(p, frame, name))
@@ -564,6 +559,7 @@ void cg_end_element(void *user, const XML_Char *name) {
     case CG_LABEL: end_word(p, frame, cg_local_name(name)); break;
     case CG_ATTRIBUTE_NAME:
     case CG_ATTRIBUTE_VALUE: cg_attribute_end(p, frame); break;
+    case CG_AGGREGATE: cg_tin_end(p, frame); break;
     case CG_RING: cg_ring_end(p, frame); break;
     case CG_POLYGON: cg_polygon_end(p, frame); break;
     case CG_IMPLICIT: end_implicit(p, frame); break;

@@ -17,7 +17,8 @@ const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t fe
 
 void cg_polygon_begin(cg_parser *p, const char *id, bool simple) {
     p->in_polygon = true;
-    p->has_exterior = p->polygon_counted = false;
+    p->polygons++;
+    p->has_exterior = p->polygon_counted = p->polygon_flat = false;
     p->polygon_id = id;
     p->xyz.len = 0;
     p->rings.len = 0;
@@ -35,12 +36,12 @@ void cg_ring_begin(cg_parser *p, bool exterior, const char *id) {
     p->in_ring = true;
     p->ring_exterior = exterior;
     p->ring_fault = NULL;
-    p->ring_curved = false;
+    p->ring_curved = p->ring_flat = p->ring_high = false;
     p->ring_first = p->xyz.len;
 }
 
-/* Tuples of 2 or 3 numbers; 2 lie at height 0. Joints of a ring's curves, which repeat the point before, stay: cleaning
- * polygons is geo's business. */
+/* Tuples of 2 or 3 numbers; 2 lie at height 0 until cg_fill_heights. Joints of a ring's curves, which repeat the point
+ * before, stay: cleaning polygons is geo's business. */
 static void add_tuples(cg_parser *p, uint32_t dimension) {
     const double *values = p->numbers.values.data;
     size_t count = p->numbers.values.len;
@@ -48,6 +49,8 @@ static void add_tuples(cg_parser *p, uint32_t dimension) {
         cg_no_memory(p);
         return;
     }
+    p->ring_flat |= dimension == 2;
+    p->ring_high |= dimension == 3;
     for (size_t i = 0; i < count; i += dimension) {
         double *xyz = p->xyz.data + p->xyz.len;
         xyz[0] = values[i];
@@ -93,6 +96,8 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         p->ring_fault = "ring with too few points";
     else if (!p->ring_fault && p->ring_exterior && p->has_exterior)
         p->ring_fault = "polygon with a second exterior ring";
+    else if (!p->ring_fault && p->ring_flat && (p->ring_high || (p->has_exterior && !p->polygon_flat)))
+        p->ring_fault = "ring whose points have no heights, beside others";
     if (p->ring_fault) {
         cg_issue(p, GEO_SKIPPED, p->ring_fault, id);
         p->polygon_counted = true;
@@ -113,6 +118,7 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
     }
     cg_ring_look(p, p->ring_id.data, points, id);
     p->has_exterior |= p->ring_exterior;
+    p->polygon_flat |= p->ring_flat;
     if (!array_push(&p->rings, points))
         cg_no_memory(p);
 }
@@ -135,6 +141,7 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
     cg_object *object = &p->object;
     cg_polygon polygon = { .id = p->polygon_id,
                            .srs = frame->srs,
+                           .flat = p->polygon_flat,
                            .ring_count = (uint32_t)p->rings.len,
                            .ring_size = p->rings.data,
                            .xyz = p->xyz.data,
@@ -145,8 +152,12 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
     }
     /* Terrain has no levels to choose from and no references: it goes straight through, however large it is. */
     if (object->features.data[0].type->kind == GEO_TERRAIN) {
-        if (p->pass == 1)
-            cg_emit_polygon(p, &polygon, frame->geometry, frame->flip);
+        if (p->pass != 1)
+            return;
+        if (polygon.flat)
+            geo_issue(p->sink->issues, GEO_GUESSED, "terrain without heights: put at 0",
+                      cg_report_id(p, p->polygon_id, frame->feature));
+        cg_emit_polygon(p, &polygon, frame->geometry, frame->flip);
         return;
     }
     if (!cg_object_room(p))
