@@ -11,7 +11,7 @@
 typedef struct tag_buffer {
     NOC_ARRAY(lamp_tag) tags;
     NOC_ARRAY(char *) owned;
-    char id[64];
+    char id[128];
     bool refused; /* memory, to one of them; stays set */
 } tag_buffer;
 

@@ -167,6 +167,11 @@ bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag
             add_tag(b, key, value);
     }
     snprintf(b->id, sizeof(b->id), "feature %lld", (long long)gdal.OGR_F_GetFID(feature));
+    for (size_t i = 0; i < b->tags.len; i++) { /* a whole one: a part of it cannot be searched for */
+        const lamp_tag *tag = &b->tags.data[i];
+        if (!strcmp(tag->key, "gml_id") && *tag->value && strlen(tag->value) < sizeof(b->id))
+            noc_snprintf(b->id, sizeof(b->id), "%s", tag->value);
+    }
     return !b->refused;
 }
 
