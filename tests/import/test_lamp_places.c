@@ -207,6 +207,30 @@ static void test_headless(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Values in the first row are no names: they hide no status, and one that nothing names is read by its words. */
+static void test_headless_status(void **state) {
+    static const struct {
+        const char *text, *map;
+        size_t lamps, left, inactive;
+    } rows[] = {
+        { "a,9.51,51.31,in Betrieb\nb,9.52,51.31,abgebaut\nc,9.53,51.31,geplant\n", "lon=#2,lat=#3", 1, 2, 0 },
+        { "a,9.51,51.31,abgebaut\nb,9.52,51.31,in Betrieb\n", "lon=#2,lat=#3", 1, 1, 0 },
+        { "a,9.51,51.31,nicht in Betrieb\nb,9.52,51.31,ok\n", "lon=#2,lat=#3", 1, 1, 0 },
+        { "a,9.51,51.31,in Betrieb\nb,9.52,51.31,abgebaut\n", "lon=#2,lat=#3,status=#4", 1, 0, 1 },
+        { "a,9.51,51.31,removed,1\nb,9.52,51.31,no,0\n", "lon=#2,lat=#3,status=#5", 1, 0, 1 },
+        { "a,9.51,51.31,Planned Parenthood at Main St\n", "lon=#2,lat=#3", 1, 0, 0 },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        lamp_sink s;
+        size_t lamps = read_mapped(&s, rows[i].text, rows[i].map);
+        size_t left = issue_count(&s, "column without a name"), inactive = issue_count(&s, "(removed, disused");
+        if (lamps != rows[i].lamps || left != rows[i].left || inactive != rows[i].inactive)
+            fail_msg("%zu: %zu lamps, %zu left out, %zu not in use", i, lamps, left, inactive);
+        lamp_sink_end(&s);
+    }
+}
+
 static const char *field_of(const lamp_sink *s, const char *name) {
     for (size_t i = 0; i < s->columns.len; i++)
         if (!strcmp(s->columns.data[i].name, name))
@@ -239,7 +263,8 @@ static void test_read_as(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_coordinates),  cmocka_unit_test(test_dms),      cmocka_unit_test(test_utf16),
-        cmocka_unit_test(test_utf16_pieces), cmocka_unit_test(test_headless), cmocka_unit_test(test_read_as),
+        cmocka_unit_test(test_utf16_pieces), cmocka_unit_test(test_headless), cmocka_unit_test(test_headless_status),
+        cmocka_unit_test(test_read_as),
     };
     assert_non_null(mkdtemp(folder));
     int failed = cmocka_run_group_tests_name("import lamp places", tests, NULL, NULL);

@@ -204,8 +204,12 @@ static noc_status read_header(csv *c, columns *cols) {
         return no_memory(c);
     understand(cols);
     cols->headless = c->again = is_row(c, cols);
-    if (cols->headless)
+    if (cols->headless) {
         noc_info(c->log, "%s: it has no header: its first line is a row", noc_stream_name(c->stream));
+        lamp_keys_headless(cols->keys);
+        cols->tags = false;
+        understand(cols);
+    }
     bool has[LAMP_FIELD_TOTAL] = { false };
     for (size_t i = 0; i < cols->count; i++)
         has[lamp_keys_meaning(cols->keys, cols->names[i]).field] = true;

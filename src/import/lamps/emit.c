@@ -70,6 +70,11 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
         return noc_no_memory(w->sink->log, w->place);
     if (!lamp_accept(verdict, lamp.id, w->sink->issues))
         return NOC_OK;
+    if (lamp_unnamed_status(w->keys, tags, count)) {
+        geo_issue(w->sink->issues, GEO_SKIPPED,
+                  "lamp not in use by a column without a name: --lamp-columns status=#N says which it is", lamp.id);
+        return NOC_OK;
+    }
     if (w->kinds.any && !lamp_kinds_tell(&w->kinds, tags, count)) {
         geo_issue(w->sink->issues, GEO_SKIPPED, "point that is called something other than a lamp", lamp.id);
         return NOC_OK;

@@ -236,6 +236,7 @@ struct lamp_keys {
     size_t commas, points;       /* values with such a decimal sign */
     lamp_conditions *conditions; /* NULL: none */
     bool told;                   /* lamps tell their tags */
+    bool headless;               /* names are values */
     char tags[GEO_LAMP_TAGS];    /* of the last one */
 };
 
@@ -306,9 +307,13 @@ static lamp_meaning find_meaning(const lamp_keys *keys, const char *name, const 
     for (size_t i = 0; i < keys->maps.len && !map; i++)
         if (lamp_same_key(keys->maps.data[i].column, name))
             map = &keys->maps.data[i];
+    if (!map && keys->headless)
+        return (lamp_meaning){ .scale = 1, .unit = "", .free_text = true, .unnamed = true };
     if (!map)
         return lamp_meaning_of(name);
     lamp_meaning m = map->meaning;
+    if (keys->headless)
+        return m;
     lamp_roles_of(name, &m);
     double scale;
     const char *unit;
@@ -441,6 +446,19 @@ static size_t cut(const char *text) {
     return n;
 }
 
+void lamp_keys_headless(lamp_keys *keys) {
+    keys->headless = true;
+    for (size_t i = 0; i < keys->keys.len; i++)
+        keys->keys.data[i].meaning = find_meaning(keys, keys->keys.data[i].name, &keys->keys.data[i].ignored);
+}
+
+bool lamp_keys_maps(const lamp_keys *keys, lamp_field field) {
+    for (size_t i = 0; i < keys->maps.len; i++)
+        if (keys->maps.data[i].meaning.field == field)
+            return true;
+    return false;
+}
+
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag) {
     key *k = get_tag(keys, tag);
     const char *value = tag->value;
@@ -491,6 +509,8 @@ bool lamp_keys_number(const lamp_keys *keys, size_t number) {
 static const char *field_read(const key *k) {
     const lamp_meaning *m = &k->meaning;
     bool place = m->field >= LAMP_FIELD_LON && m->field <= LAMP_FIELD_LAT_LON;
+    if (m->unnamed)
+        return k->described ? "description" : "";
     if (k->tells || (!m->field && (lamp_key_tells(k->name) || m->asks == LAMP_ASKS_ALONE)))
         return "kind";
     if (!m->field && (m->role >= LAMP_ROLE_WHY_NOT || m->asks == LAMP_ASKS))

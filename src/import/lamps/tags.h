@@ -70,6 +70,7 @@ typedef struct lamp_meaning {
     lamp_role role;
     lamp_asks asks;
     bool makes;     /* a key of tags that make a lamp (highway, man_made, ...) */
+    bool unnamed;   /* a column of a table without a header, which is not mapped: its values alone tell of it */
     bool free_text; /* says nothing of lamps by its name, and its values may: lamp_model_stands_alone */
     unsigned after; /* such a key begins there, after a lifecycle prefix ("disused:"); 0: none */
 } lamp_meaning;
@@ -165,6 +166,10 @@ void lamp_keys_described(lamp_keys *keys, const lamp_tag *tag);
 void lamp_keys_understood(lamp_keys *keys, const lamp_tag *tag);
 /* Does the user name a column by that number, from 1 on ("#2")? */
 bool lamp_keys_number(const lamp_keys *keys, size_t number);
+/* The table has no header: what its columns are called by are values, which mean nothing unless they are mapped. */
+void lamp_keys_headless(lamp_keys *keys);
+/* Does the user name a column of that field? */
+bool lamp_keys_maps(const lamp_keys *keys, lamp_field field);
 /* Hands the columns noted so far, in the order met, to the sink. */
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) NOC_MUST_USE;
 
@@ -198,6 +203,9 @@ bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
 bool lamp_columns_ask(lamp_keys *keys, const char *const *names, size_t count);
 /* 1: yes, -1: no, in many languages, 0: neither. A number is how many. */
 int lamp_yes_or_no(const char *value);
+/* Does an unnamed column say, by nothing but such words, that the lamp is not in use ("abgebaut"), where none is mapped
+ * as status? */
+bool lamp_unnamed_status(lamp_keys *keys, const lamp_tag *tags, size_t count);
 /* Do those columns of this row say yes, or name something other than no? */
 bool lamp_is_told(lamp_keys *keys, const lamp_tag *tags, size_t count);
 

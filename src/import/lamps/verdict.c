@@ -288,6 +288,24 @@ lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count
     return verdict;
 }
 
+bool lamp_unnamed_status(lamp_keys *keys, const lamp_tag *tags, size_t count) {
+    enum { MOST_BLANKS = 2 }; /* "nicht in Betrieb"; more words are a text about something */
+    char folded[64];
+    if (lamp_keys_maps(keys, LAMP_FIELD_STATUS))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        if (!tags[i].value || strlen(tags[i].value) >= sizeof(folded) || !lamp_tag_meaning(keys, &tags[i]).unnamed)
+            continue;
+        size_t blanks = 0;
+        lamp_fold(tags[i].value, true, folded, sizeof(folded));
+        for (const char *p = folded; *p; p++)
+            blanks += *p == ' ';
+        if (blanks <= MOST_BLANKS && lamp_inactive_word(folded))
+            return true;
+    }
+    return false;
+}
+
 bool lamp_is_told(lamp_keys *keys, const lamp_tag *tags, size_t count) {
     bool told = false;
     for (size_t i = 0; i < count && !told; i++)
