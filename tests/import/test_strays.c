@@ -16,9 +16,9 @@ static noc_log *log_;
 
 static const char *csv_of(const double *eastings, size_t count) {
     static char text[4000];
-    char *end = text + sprintf(text, "id,x,y,lamp_height,lumens,cct\n");
+    char *end = text + sprintf(text, "id,x,y,lamp_height,lumens,cct,direction\n");
     for (size_t i = 0; i < count; i++)
-        end += sprintf(end, "%zu,%.1f,5820000,8,5000,3000\n", i, eastings[i]);
+        end += sprintf(end, "%zu,%.1f,5820000,8,5000,3000,90\n", i, eastings[i]);
     return text;
 }
 
@@ -107,7 +107,8 @@ static void of_maps(void **state) {
     (void)state;
 #define LAMP(at)                                                                                                       \
     "{\"type\":\"Feature\",\"properties\":{\"highway\":\"street_lamp\",\"height\":\"8\",\"light:lumen\":\"5000\","     \
-    "\"light:colour_temperature\":\"3000\"},\"geometry\":{\"type\":\"Point\",\"coordinates\":[" at "]}}"
+    "\"light:colour_temperature\":\"3000\",\"direction\":\"90\"},"                                                     \
+    "\"geometry\":{\"type\":\"Point\",\"coordinates\":[" at "]}}"
     const expected e = { 3, 1, 0, "at 3.38 52.52",
                          "1 of 4 lamps is more than 20 km from all others, the first by 680 km" };
     noc_import_params p = params_of();
@@ -136,8 +137,34 @@ static void rare_groups(void **state) {
     expect(path, &p, &e);
 }
 
+/* One row whose longitude and latitude are exchanged is told of as such; one that lies elsewhere is not. */
+static void test_exchanged(void **state) {
+    static const char *const rows[] = { "51.31,9.53", "20.5,9.53" };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char text[300], examples[1000];
+        snprintf(
+            text, sizeof(text),
+            "id,lon,lat,wattage,lumens\na,9.51,51.31,70,900\nb,9.52,51.31,50,900\nc,%s,50,900\nd,9.54,51.31,50,900\n",
+            rows[i]);
+        const char *path = write_file("exchanged.csv", text);
+        noc_import_params p = noc_import_default_params();
+        for (int look = 0; look < 2; look++) {
+            noc_scene *s = noc_scene_create(log_);
+            noc_report *report = NULL;
+            noc_status status = look ? noc_inspect(log_, path, &p, &report) : noc_scene_load(s, &path, 1, &p, &report);
+            assert_int_equal(status, NOC_OK);
+            assert_int_equal(count_lines(report, "lamp more than 20 km from all others", examples), 1);
+            assert_int_equal(count_lines(report, "its coordinates seem exchanged", examples), i == 0);
+            noc_report_destroy(report);
+            noc_scene_destroy(s);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_exchanged),
         cmocka_unit_test(by_distance),
 #if NOC_HAVE_GDAL
         cmocka_unit_test(of_maps),

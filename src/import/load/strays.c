@@ -125,8 +125,14 @@ static double distance(strays *s, const place *p, uint32_t group) {
 
 /* ---- what becomes of them ---- */
 
+/* Would it lie among the others with its two coordinates exchanged? */
+static bool seems_exchanged(importer *im, strays *s, const place *p, uint32_t most) {
+    place other = { .in = p->in };
+    return p->given && place_exchanged(im, p->given, other.xy) && distance(s, &other, most) <= APART;
+}
+
 /* Returns whether it is left out. The first is measured for the message. */
-static bool judge(strays *s, const place *p, uint32_t most, double *farthest) {
+static bool judge(importer *im, strays *s, const place *p, uint32_t most, double *farthest) {
     uint32_t group = group_of(s, p->cell);
     if (group == most)
         return false;
@@ -135,7 +141,11 @@ static bool judge(strays *s, const place *p, uint32_t most, double *farthest) {
         noc_snprintf(at, sizeof(at), "at %.10g %.10g", p->given->xy[0], p->given->xy[1]);
     bool stray = is_stray(s->cells.data[group].count, s->cells.data[most].count);
     if (stray)
-        geo_issue(p->in->issues, GEO_SKIPPED, "lamp more than 20 km from all others", at);
+        geo_issue(p->in->issues, GEO_SKIPPED,
+                  seems_exchanged(im, s, p, most)
+                      ? "lamp more than 20 km from all others: its coordinates seem exchanged"
+                      : "lamp more than 20 km from all others",
+                  at);
     else
         geo_issue(p->in->issues, GEO_GUESSED, "lamp of a group more than 20 km from most of them", at);
     *farthest = *farthest > 0 ? *farthest : distance(s, p, most);
@@ -157,7 +167,7 @@ static void judge_all(importer *im, strays *s) {
     double metres = 0;
     for (size_t i = 0; i < s->places.len; i++) {
         const place *p = &s->places.data[i];
-        bool stray = judge(s, p, most, &metres);
+        bool stray = judge(im, s, p, most, &metres);
         left += stray;
         apart += !stray && group_of(s, p->cell) != most;
         p->in->lamps_lost += stray;
