@@ -289,7 +289,7 @@ class Page(Opened):
         page.evaluate("(viewer.told = [], viewer.on('stats', ({ pane, frames }) => pane === 2 && viewer.told.push("
                       "[frames, document.querySelectorAll('.caption')[2].textContent])), 0)")
         page.evaluate("viewer.set('seed', '5')")
-        page.wait("viewer.told[0]?.[0] < 16")
+        page.wait("viewer.told.some(([frames]) => frames < 16)")
         page.wait("document.querySelectorAll('.caption')[2].textContent.includes('RMSE')", 60)
         told = page.evaluate('viewer.told')
         early = [text for frames, text in told if frames < 16]
