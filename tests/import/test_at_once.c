@@ -244,12 +244,41 @@ static void refused_memory(void **state) {
     }
 }
 
+/* What waits holds nothing of the file's reading, which may end before. */
+static void copies_hold_their_own(void **state) {
+    (void)state;
+    char image[] = "brick.png", name[] = "brick", id[] = "house";
+    double xyz[9] = { 1, 2, 3, 4, 5, 6, 7, 8, 9 };
+    uint32_t indices[3] = { 0, 1, 2 };
+    float uv[6] = { 0 };
+    surface_look look = { .as = { .name = name, .albedo = { 1, 0, 0 } }, .image = image };
+    part_surface surface = { NOC_CLASS_WALL, 3, 1, xyz, indices, uv, &look };
+    load_part part = { .kind = PART_OBJECT, .u.object = { .id = id, .surfaces = &surface, .surface_count = 1 } };
+    noc_arena arena = { 0 };
+    const load_part copy = part_copied(&arena, part);
+    memset(image, 'x', sizeof(image) - 1);
+    memset(name, 'x', sizeof(name) - 1);
+    memset(id, 'x', sizeof(id) - 1);
+    memset(xyz, 0, sizeof(xyz));
+    memset(indices, 0, sizeof(indices));
+    memset(&look, 0, sizeof(look));
+    memset(&surface, 0, sizeof(surface));
+    const part_surface *s = copy.u.object.surfaces;
+    assert_string_equal(copy.u.object.id, "house");
+    assert_true(s->vertex_count == 3 && s->xyz[8] == 9 && s->indices[2] == 2 && s->uv && s->uv != uv);
+    assert_string_equal(s->look->image, "brick.png");
+    assert_string_equal(s->look->as.name, "brick");
+    assert_true(s->look->as.albedo[0] == 1);
+    arena_free(&arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_are_the_same),           cmocka_unit_test(place_is_the_first_files),
         cmocka_unit_test(large_objects_wait_their_turn), cmocka_unit_test(errors_are_the_first_files),
         cmocka_unit_test(limits_are_the_same),           cmocka_unit_test(readers_ahead_share_memory),
         cmocka_unit_test(cancelled_at_any_time),         cmocka_unit_test(refused_memory),
+        cmocka_unit_test(copies_hold_their_own),
     };
     return cmocka_run_group_tests_name("import/at_once", tests, make_folder, remove_folder);
 }

@@ -92,8 +92,10 @@ load_part part_copied(noc_arena *arena, load_part p) {
             s[i].indices = copied(arena, s[i].indices, 3 * s[i].triangle_count * sizeof(*s[i].indices));
             s[i].uv = s[i].uv ? copied(arena, s[i].uv, 2 * s[i].vertex_count * sizeof(*s[i].uv)) : NULL;
             surface_look *look = s[i].look ? copied(arena, s[i].look, sizeof(*look)) : NULL;
-            if (look)
+            if (look) {
                 look->image = arena_strdup(arena, look->image);
+                look->as.name = arena_strdup(arena, look->as.name);
+            }
             s[i].look = look;
         }
         p.u.object.surfaces = s;
