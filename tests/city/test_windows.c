@@ -36,7 +36,8 @@ static void test_uses(void **state) {
         snprintf(id, sizeof(id), "b%d", i);
         for (int use = NOC_USE_FLATS; use < NOC_USE_COUNT; use++) {
             city_windows out = { 0 };
-            assert_int_equal(city_windows_make(id, (noc_building_use)use, w.t, w.count, &p, NULL, &out), NOC_OK);
+            assert_int_equal(city_windows_make(id, (noc_building_use)use, w.t, w.count, &p, NULL, SIZE_MAX, &out),
+                             NOC_OK);
             size_t kinds[NOC_WINDOW_KIND_COUNT] = { 0 }, never = 0;
             for (size_t k = 0; k < out.list.len; k++) {
                 kinds[out.list.data[k].kind]++;
@@ -69,7 +70,7 @@ static const char *home(double height, double width) {
 
 static city_windows make_as(const char *id, const walls *w, const noc_window_params *p, const city_cover *cover) {
     city_windows out = { 0 };
-    assert_int_equal(city_windows_make(id, NOC_USE_UNKNOWN, w->t, w->count, p, cover, &out), NOC_OK);
+    assert_int_equal(city_windows_make(id, NOC_USE_UNKNOWN, w->t, w->count, p, cover, SIZE_MAX, &out), NOC_OK);
     assert_int_equal(out.verdicts.len, w->count);
     return out;
 }
@@ -243,6 +244,17 @@ static void test_party(void **state) {
         city_windows_free(&out);
         city_cover_destroy(cover);
     }
+    for (double reach = 100; reach < 1e6; reach *= 10) /* oblique walls, however long, where they are near, and not */
+        for (int near = 0; near < 2; near++) {
+            const double y = near ? -.5 : -8;
+            all = own;
+            add(&all, (double[]){ reach, y - .01 * reach }, (double[]){ -reach, y + .01 * reach }, 90, 120, 120);
+            city_cover *cover = cover_of(&all);
+            city_windows out = make_as(home(6, 10), &own, &noc_window_default_params(), cover);
+            assert_int_equal(out.list.len, near ? 0 : 8);
+            city_windows_free(&out);
+            city_cover_destroy(cover);
+        }
     all = own; /* a lower neighbour hides the lower storey */
     add(&all, (double[]){ 20, 0 }, (double[]){ -10, 0 }, 90, 103, 103);
     city_cover *cover = cover_of(&all);
@@ -397,7 +409,8 @@ static size_t luminances(noc_building_use use, int storey, double *y) {
     front(&w, 0, 1200, 0, 60);
     city_windows out = { 0 };
     size_t n = 0;
-    assert_int_equal(city_windows_make("h", use, w.t, w.count, &noc_window_default_params(), NULL, &out), NOC_OK);
+    assert_int_equal(city_windows_make("h", use, w.t, w.count, &noc_window_default_params(), NULL, SIZE_MAX, &out),
+                     NOC_OK);
     for (size_t i = 0; i < out.list.len; i++) {
         const float *e = out.list.data[i].emission;
         if (storey < 0 || out.list.data[i].storey == storey)
@@ -480,12 +493,41 @@ static void test_no_memory(void **state) {
         city_windows out = { 0 };
         noc_refuse_allocation(n, false);
         noc_status status =
-            city_windows_make("b", NOC_USE_UNKNOWN, w.t, w.count, &noc_window_default_params(), NULL, &out);
+            city_windows_make("b", NOC_USE_UNKNOWN, w.t, w.count, &noc_window_default_params(), NULL, SIZE_MAX, &out);
         done = noc_allocations() < n;
         noc_refuse_allocation(0, false);
         assert_int_equal(status, done ? NOC_OK : NOC_ERR_MEMORY);
         city_windows_free(&out);
     }
+}
+
+/* Where many walls stand close to one another, as many are looked at as is allowed; windows after those are left out,
+ * and their facades are counted. */
+static void test_crowded(void **state) {
+    (void)state;
+    enum { BEHIND = 30 };
+    walls own = { .count = 0 }, all;
+    front(&own, 0, 60, 100, 106.5);
+    all = own;
+    for (int i = 0; i < BEHIND; i++)
+        add(&all, (double[]){ -10, 2 + .05 * i }, (double[]){ 70, 2 + .05 * i }, 90, 120, 120);
+    city_cover *cover = cover_of(&all);
+    size_t whole = make_as(home(6, 60), &own, &noc_window_default_params(), cover).list.len, last = 0;
+    assert_int_equal(whole, 2 * 25);
+    /* 5 rays a window look at 62 triangles, in up to four cells */
+    for (size_t looks = 0; looks <= 20 * 62 * whole; looks += 62 * whole) {
+        city_windows out = { 0 };
+        assert_int_equal(city_windows_make(home(6, 60), NOC_USE_UNKNOWN, own.t, own.count, &noc_window_default_params(),
+                                           cover, looks, &out),
+                         NOC_OK);
+        assert_int_equal(out.crowded, out.list.len < whole);
+        assert_true(looks ? out.list.len >= last && out.list.len >= looks / (20 * 62) : !out.list.len);
+        assert_int_equal(out.verdicts.data[0], out.list.len ? NOC_WALL_TAKEN : NOC_WALL_PARTY);
+        last = out.list.len;
+        city_windows_free(&out);
+    }
+    assert_int_equal(last, whole);
+    city_cover_destroy(cover);
 }
 
 int main(void) {
@@ -494,7 +536,7 @@ int main(void) {
         cmocka_unit_test(test_shapes),    cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
         cmocka_unit_test(test_uses),      cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
         cmocka_unit_test(test_levels),    cmocka_unit_test(test_luminances), cmocka_unit_test(test_many_pieces),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_crowded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -454,13 +454,36 @@ static void test_progress(void **state) {
     free(text);
 }
 
+/* Walls of 20 km by 1 km have room for two million windows, in a file of a kilobyte: they get none, which is said, and
+ * the house before them keeps its own. */
+static void test_too_many(void **state) {
+    (void)state;
+    struct run r;
+    load(&r,
+         BLOCK("0", "1") "object 0 huge 1\npolygon 1 678100 5404000 370 698100 5404000 370 698100 5404000 1370 678100 "
+                         "5404000 1370\nend\n",
+         .35, 21);
+    assert_int_equal(r.info.windows, 288);
+    noc_report_totals t;
+    noc_report_get_totals(r.report, &t);
+    assert_int_equal(t.windows.walls[NOC_WALL_PARTY], 1);
+    assert_non_null(strstr(r.last_warning, "a: 1 of 2 buildings have no windows: walls have room for over 1 million"));
+    finish(&r);
+    load(&r,
+         BLOCK("0", "1") "object 0 wide 1\npolygon 1 678100 5404000 370 682100 5404000 370 682100 5404000 1370 678100 "
+                         "5404000 1370\nend\n",
+         .35, 21); /* a fifth of that */
+    assert_true(r.info.windows > 400000);
+    finish(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_made),           cmocka_unit_test(test_own),      cmocka_unit_test(test_panes),
         cmocka_unit_test(test_ratio),          cmocka_unit_test(test_switched), cmocka_unit_test(test_share),
         cmocka_unit_test(test_share_of_flats), cmocka_unit_test(test_glass),    cmocka_unit_test(test_no_memory),
         cmocka_unit_test(test_threads),        cmocka_unit_test(test_progress), cmocka_unit_test(test_same_views),
-        cmocka_unit_test(test_seed),
+        cmocka_unit_test(test_seed),           cmocka_unit_test(test_too_many),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

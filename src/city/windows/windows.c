@@ -40,38 +40,59 @@ static void give_light(city_window *w, const building_box *b, const building_use
     city_window_shine(w, use, storey, pair, params);
 }
 
-/* Takes the windows from `first` on that another wall hides away; returns how many. */
-static size_t drop_hidden(city_window_list *list, size_t first, const city_cover *cover) {
+/* Takes the windows from `first` on that another wall hides away; returns how many. Of more than so many looks at walls
+ * the windows that are left count as hidden. */
+static size_t drop_hidden(city_window_list *list, size_t first, const city_cover *cover, size_t *looks, size_t most) {
     size_t kept = first;
-    for (size_t i = first; i < list->len; i++)
-        if (!city_cover_hides(cover, &list->data[i]))
+    for (size_t i = first; i < list->len && *looks < most; i++)
+        if (!city_cover_hides(cover, &list->data[i], looks))
             list->data[kept++] = list->data[i];
     size_t hidden = list->len - kept;
     list->len = kept;
     return hidden;
 }
 
-static bool add_facade(const wall_facets *f, const strip *s, const building_box *b, const building_use *use,
-                       const noc_window_params *params, const city_cover *cover, city_windows *out) {
+/* What the windows of a building are made by. */
+typedef struct window_maker {
+    const building_box *box;
+    const building_use *use;
+    const noc_window_params *params;
+    const city_cover *cover;
+    size_t looks, most_looks;
+} window_maker;
+
+/* The windows that a facade shall have, behind those that there are. False: no memory. */
+static bool find_windows(window_maker *m, const wall_facets *f, const strip *s, city_facade *facade,
+                         city_windows *out) {
+    size_t first = out->list.len, hidden = 0;
+    bool crowded = m->looks >= m->most_looks;
+    if (!crowded) {
+        if (!wall_cells_find(f, s, m->params, m->use, m->box->lo[2], &out->list))
+            return false;
+        hidden = drop_hidden(&out->list, first, m->cover, &m->looks, m->most_looks);
+        crowded = m->looks >= m->most_looks;
+    }
+    out->crowded += crowded;
+    facade->windows = out->list.len - first;
+    facade->verdict = facade->windows ? NOC_WALL_TAKEN : hidden || crowded ? NOC_WALL_PARTY : NOC_WALL_SMALL;
+    return true;
+}
+
+static bool add_facade(const wall_facets *f, const strip *s, window_maker *m, city_windows *out) {
     city_facade facade = { .verdict = NOC_WALL_SMALL };
     const facet *front = &f->facets.data[s->parts[0].facet];
-    size_t first = out->list.len, hidden = 0;
+    size_t first = out->list.len;
     for (size_t i = 0; i < s->count; i++)
         facade.area += f->facets.data[s->parts[i].facet].area;
-    if (use->bare) {
+    if (m->use->bare)
         facade.verdict = NOC_WALL_BARE;
-    } else if (fabs(front->plane.n[2]) > sin(params->tilt * M_PI / 180)) {
+    else if (fabs(front->plane.n[2]) > sin(m->params->tilt * M_PI / 180))
         facade.verdict = NOC_WALL_TILTED;
-    } else if (facade.area >= params->min_area) {
-        if (!wall_cells_find(f, s, params, use, b->lo[2], &out->list))
-            return false;
-        hidden = drop_hidden(&out->list, first, cover);
-        facade.windows = out->list.len - first;
-        facade.verdict = facade.windows ? NOC_WALL_TAKEN : hidden ? NOC_WALL_PARTY : NOC_WALL_SMALL;
-    }
+    else if (facade.area >= m->params->min_area && !find_windows(m, f, s, &facade, out))
+        return false;
     for (size_t i = first; i < out->list.len; i++) {
         out->list.data[i].facade = (uint32_t)out->facades.len;
-        give_light(&out->list.data[i], b, use, params);
+        give_light(&out->list.data[i], m->box, m->use, m->params);
     }
     for (size_t i = 0; i < s->count; i++) {
         const facet *a = &f->facets.data[s->parts[i].facet];
@@ -82,10 +103,11 @@ static bool add_facade(const wall_facets *f, const strip *s, const building_box 
 }
 
 noc_status city_windows_make(const char *id, noc_building_use told, const wall_triangle *walls, size_t count,
-                             const noc_window_params *params, const city_cover *cover, city_windows *out) {
+                             const noc_window_params *params, const city_cover *cover, size_t looks,
+                             city_windows *out) {
     wall_facets f = { 0 };
     wall_strips strips = { 0 };
-    out->list.len = out->facades.len = out->verdicts.len = 0;
+    out->list.len = out->facades.len = out->verdicts.len = out->crowded = 0;
     bool ok = wall_facets_find(walls, count, &f) && wall_strips_find(&f, params->cell, &strips) &&
               array_reserve(&out->verdicts, NOC_MAX(count, 1u));
     if (ok && count)
@@ -93,9 +115,10 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
     out->verdicts.len = ok ? count : 0;
     building_box b = building_box_of(&f);
     building_use use = city_building_use(id, told, b.hi[2] - b.lo[2], b.width);
+    window_maker m = { .box = &b, .use = &use, .params = params, .cover = cover, .most_looks = looks };
     for (size_t i = 0; ok && i + 1 < strips.first.len; i++) {
         strip s = wall_strip_get(&f, &strips, i);
-        ok = add_facade(&f, &s, &b, &use, params, cover, out);
+        ok = add_facade(&f, &s, &m, out);
     }
     wall_strips_free(&strips);
     wall_facets_free(&f);

@@ -50,6 +50,7 @@ typedef struct city_windows {
     city_window_list list;
     NOC_ARRAY(city_facade) facades;
     NOC_ARRAY(uint8_t) verdicts; /* noc_wall_verdict of each triangle, in the order they were given */
+    size_t crowded;              /* facades that have no windows, or not all: more looks would have been needed */
 } city_windows;
 
 /* Walls of all buildings, to ask what stands before a window. NULL is allowed where there are no others. */
@@ -58,15 +59,17 @@ typedef struct city_cover city_cover;
  * the scene whose ground hides what lies under it; NULL: none does. NULL: memory was refused. */
 city_cover *city_cover_create(const float *xyz, size_t triangles, const noc_scene *ground) NOC_MUST_USE;
 void city_cover_destroy(city_cover *cover);
-/* Does a wall stand close before any of the window's corners or its middle, or the ground before its foot? */
-bool city_cover_hides(const city_cover *cover, const city_window *w);
+/* Does a wall stand close before any of the window's corners or its middle, or the ground before its foot? Adds to
+ * *looks the walls that were looked at. */
+bool city_cover_hides(const city_cover *cover, const city_window *w, size_t *looks);
 /* Does a ray from o along the unit vector d meet one of them between these distances, m? */
 bool city_cover_meets(const city_cover *cover, const double o[3], const double d[3], double from, double to);
 
 /* The windows of a building. What is in `out` is replaced; zeroed it is empty. The result does not depend on the order
- * of the triangles. NOC_ERR_MEMORY, not reported: memory was refused. */
+ * of the triangles. looks: at walls that may hide windows, after which the others are left out; SIZE_MAX: all are
+ * looked at; 0: there are no windows. NOC_ERR_MEMORY, not reported: memory was refused. */
 noc_status city_windows_make(const char *id, noc_building_use told, const wall_triangle *walls, size_t count,
-                             const noc_window_params *params, const city_cover *cover, city_windows *out);
+                             const noc_window_params *params, const city_cover *cover, size_t looks, city_windows *out);
 void city_windows_free(city_windows *w);
 
 /* Windows that a model has itself (own.c). A pane is a light of its window: a rectangle, or a

@@ -15,6 +15,14 @@ static noc_status no_memory(const importer *im) {
 
 enum { AT_ONCE = 256 }; /* buildings that are found before they are taken */
 
+/* What windows may cost, so that a small file does not take minutes: windows that walls have room for, beside so many a
+ * byte of the inputs, and looks at walls that may hide them, beside so many a triangle of walls. A city of blocks has
+ * .5 windows a byte and takes 2,200 looks a triangle. */
+#define MOST_WINDOWS 1e6
+#define WINDOWS_A_BYTE 4.0
+#define MOST_LOOKS 2e8 /* a second or two */
+#define LOOKS_A_TRIANGLE 8000.0
+
 /* Windows that a mesh of a building is itself. */
 typedef struct own_mesh {
     size_t mesh;
@@ -41,9 +49,14 @@ typedef struct maker {
     size_t input; /* its file */
     city_cover *cover;
     noc_pool *pool;
-    scratch *scratch;      /* [threads] */
-    found_building *found; /* [AT_ONCE] */
-    size_t first;          /* of the buildings that found[0] is */
+    NOC_ARRAY(double) area; /* of the buildings' walls, m2 */
+    double all_area;        /* of those that may have windows */
+    double most_looks;      /* before all of these */
+    size_t begin_without;   /* the first building that may have none, and all behind it */
+    size_t crowded;         /* facades whose windows were too costly */
+    scratch *scratch;       /* [threads] */
+    found_building *found;  /* [AT_ONCE] */
+    size_t first;           /* of the buildings that found[0] is */
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
 } maker;
@@ -68,15 +81,20 @@ static const float *corner(const noc_scene *s, size_t triangle, int i) {
     return s->positions.data + 3 * (size_t)s->indices.data[3 * triangle + (size_t)i];
 }
 
-/* Of a building without classes: does it lean no more than a wall may? */
-static bool is_steep(const wall_triangle *t, double tilt) {
-    double a[3], b[3], n[3];
+static void cross_edges(const wall_triangle *t, double n[3]) {
+    double a[3], b[3];
     for (int k = 0; k < 3; k++) {
         a[k] = t->p[1][k] - t->p[0][k];
         b[k] = t->p[2][k] - t->p[0][k];
     }
     for (int k = 0; k < 3; k++)
         n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* Of a building without classes: does it lean no more than a wall may? */
+static bool is_steep(const wall_triangle *t, double tilt) {
+    double n[3];
+    cross_edges(t, n);
     return fabs(n[2]) <= sin(tilt * M_PI / 180) * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
@@ -107,11 +125,48 @@ static bool gather(const maker *m, size_t first, size_t end, noc_class cls, wall
     return true;
 }
 
+/* How many buildings, in their order, may have windows, and what is spent on them. */
+static void limit(maker *m, size_t triangles) {
+    const noc_window_params *p = m->params;
+    double most = MOST_WINDOWS, windows = 0;
+    for (size_t i = 0; i < m->im->input_count; i++)
+        most += WINDOWS_A_BYTE * (double)m->im->inputs[i].bytes;
+    m->most_looks = MOST_LOOKS + LOOKS_A_TRIANGLE * (double)triangles;
+    for (m->begin_without = 0; m->begin_without < m->area.len; m->begin_without++) {
+        windows += m->area.data[m->begin_without] / (p->cell * p->storey_height);
+        if (windows > most)
+            break;
+        m->all_area += m->area.data[m->begin_without];
+    }
+    if (m->begin_without < m->area.len)
+        noc_warn(m->im->log,
+                 "%s: %zu of %zu buildings have no windows: walls have room for over %.3g million, which is too many "
+                 "for files of %.3g MB; --windows off leaves all out",
+                 m->im->inputs[m->im->buildings.data[m->begin_without].input].path, m->area.len - m->begin_without,
+                 m->area.len, most / 1e6, (most - MOST_WINDOWS) / WINDOWS_A_BYTE / 1e6);
+}
+
+/* At walls before the windows of a building: each has as many a square metre of its own. */
+static size_t looks_of(const maker *m, size_t building) {
+    if (building >= m->begin_without)
+        return 0;
+    return (size_t)(m->most_looks * m->area.data[building] / NOC_MAX(m->all_area, 1)) + 1;
+}
+
+static double area_of(const wall_triangles *walls) {
+    double sum = 0, n[3];
+    for (size_t t = 0; t < walls->len; t++) {
+        cross_edges(&walls->data[t], n);
+        sum += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
+    }
+    return sum;
+}
+
 /* Walls of all buildings, which may stand before windows. */
 static noc_status make_cover(maker *m) {
     importer *im = m->im;
     NOC_ARRAY(float) xyz = { 0 };
-    bool ok = true;
+    bool ok = array_reserve(&m->area, im->buildings.len);
     for (size_t i = 0; ok && i < im->buildings.len; i++) {
         const taken_building *b = &im->buildings.data[i];
         const wall_triangles *walls = &m->scratch->walls;
@@ -119,7 +174,10 @@ static noc_status make_cover(maker *m) {
         for (size_t t = 0; ok && t < walls->len; t++)
             for (int k = 0; ok && k < 9; k++)
                 ok = array_push(&xyz, (float)walls->data[t].p[k / 3][k % 3]);
+        m->area.data[m->area.len++] = ok && !has_class(im, b, NOC_CLASS_WINDOW) ? area_of(walls) : 0;
     }
+    if (ok)
+        limit(m, xyz.len / 9);
     m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9, im->inspect ? NULL : im->scene) : NULL;
     array_free(&xyz);
     return m->cover ? NOC_OK : no_memory(im);
@@ -252,7 +310,8 @@ static void find_building(void *ctx, size_t item, int worker) {
         ok = class_of(m->im->scene, i) != NOC_CLASS_WINDOW || find_own(m, at, i, b, found);
     /* walls of a building that has its own windows are counted, and no more */
     ok = ok && !city_windows_make(id_of(m->im, b), b->use, at->walls.data, at->walls.len, m->params,
-                                  found->own ? NULL : m->cover, &found->made);
+                                  found->own ? NULL : m->cover, found->own ? SIZE_MAX : looks_of(m, m->first + item),
+                                  &found->made);
     found->no_memory = !ok;
 }
 
@@ -267,6 +326,7 @@ static noc_status take_building(maker *m, const taken_building *b, found_buildin
     if (status)
         return status;
     counts->buildings[b->use]++;
+    m->crowded += found->own || b >= &m->im->buildings.data[m->begin_without] ? 0 : found->made.crowded;
     count_walls(m, found, counts);
     keep_verdicts(m, b, found);
     return found->own || !found->made.list.len ? NOC_OK : add_mesh(m, id_of(m->im, b), &found->made.list);
@@ -344,6 +404,7 @@ static void put_away(maker *m) {
         noc_pool_destroy(m->pool);
     city_cover_destroy(m->cover);
     array_free(&m->xyz);
+    array_free(&m->area);
     array_free(&m->indices);
 }
 
@@ -357,6 +418,11 @@ noc_status windows_add(importer *im) {
     if (!status)
         status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
     status = status ? status : add_all(&m);
+    if (!status && m.crowded)
+        noc_warn(im->log,
+                 "windows: %zu facades have none, or not all: so many walls stand close to one another that finding "
+                 "what hides them would take too long",
+                 m.crowded);
     noc_scene_light_windows(im->scene, m.params);
     put_away(&m);
     return status;
