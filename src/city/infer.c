@@ -14,6 +14,10 @@
 #define WALL_DISTANCE 3.0 /* m in front of a wall */
 #define KERB_DISTANCE 0.6 /* m behind the road's edge */
 #define MAX_LAMPS 200000
+/* At triangles of roads and at lamps beside a place, and beside those so many a triangle of the scene: a second or two.
+ */
+#define MOST_LOOKS 100000000u
+#define LOOKS_A_TRIANGLE 200u
 
 /* ---- places that are taken, by cells as large as the spacing ---- */
 
@@ -25,6 +29,7 @@ typedef struct spot {
 typedef struct spots {
     double spacing, cell; /* cell: twice the spacing */
     bool alternate;
+    size_t looks; /* so far */
     NOC_ARRAY(spot) list;
     uint32_t bucket[1 << 14]; /* index + 1 */
 } spots;
@@ -36,17 +41,17 @@ static uint32_t bucket_of(int64_t cx, int64_t cy) {
 
 /* Too near, or, while sides alternate, on the same kerb within twice the spacing? */
 static bool conflicts(const spots *s, const spot *have, double x, double y, const double facing[2]) {
-    double dx = have->x - x, dy = have->y - y, distance = hypot(dx, dy);
+    double dx = have->x - x, dy = have->y - y, near = .9 * s->spacing, far = 1.9 * s->spacing, d2 = dx * dx + dy * dy;
     bool same_kerb =
         have->facing[0] * facing[0] + have->facing[1] * facing[1] > .7 && fabs(dx * facing[0] + dy * facing[1]) < 4;
-    return distance < .9 * s->spacing || (s->alternate && same_kerb && distance < 1.9 * s->spacing);
+    return d2 < near * near || (s->alternate && same_kerb && d2 < far * far);
 }
 
-static bool keeps_distance(const spots *s, double x, double y, const double facing[2]) {
+static bool keeps_distance(spots *s, double x, double y, const double facing[2]) {
     int64_t cx = (int64_t)floor(x / s->cell), cy = (int64_t)floor(y / s->cell);
     for (int64_t j = cy - 1; j <= cy + 1; j++)
         for (int64_t i = cx - 1; i <= cx + 1; i++)
-            for (uint32_t k = s->bucket[bucket_of(i, j)]; k; k = s->list.data[k - 1].next)
+            for (uint32_t k = s->bucket[bucket_of(i, j)]; k; k = s->list.data[k - 1].next, s->looks++)
                 if (conflicts(s, &s->list.data[k - 1], x, y, facing))
                     return false;
     return true;
@@ -69,6 +74,9 @@ typedef struct inference {
     geo_issues *issues;
     spots *spots;
     int lights, lamps;
+    size_t looks, most_looks;
+    size_t triangles; /* before the first lamp */
+    uint8_t *inner;   /* inner_edges of each, found in the first round */
     const noc_progress *progress;
     double done; /* 0..1 */
     unsigned asked;
@@ -80,7 +88,7 @@ static bool go_on(inference *in) {
     if (in->asked++ % 256 == 0 && in->progress && in->progress->update &&
         !in->progress->update(in->progress->user, "lamps", in->done))
         in->cancelled = true;
-    return !in->cancelled && !in->scene->no_memory;
+    return !in->cancelled && !in->scene->no_memory && in->looks + in->spots->looks <= in->most_looks;
 }
 
 /* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
@@ -142,28 +150,47 @@ static void along_edge(inference *in, const float *a, const float *b, double off
 }
 
 /* Is the spot a little to the right of the middle of an edge on a road? */
-static bool road_beside(const noc_scene *scene, const float *a, const float *b, double off) {
+static bool road_beside(inference *in, const float *a, const float *b, double off) {
     double d[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, length = hypot(d[0], d[1]), z;
     double x = (a[0] + (double)b[0]) / 2 + off * d[1] / length, y = (a[1] + (double)b[1]) / 2 - off * d[0] / length;
-    return noc_scene_highest(scene, 1u << NOC_CLASS_ROAD, x, y, &z) && fabs(z - (a[2] + (double)b[2]) / 2) < 2;
+    return noc_scene_highest_within(in->scene, 1u << NOC_CLASS_ROAD, x, y, &z, &in->looks) &&
+           fabs(z - (a[2] + (double)b[2]) / 2) < 2;
+}
+
+/* An edge of a triangle of road, so that what is right of it is outside: counter-clockwise, seen from above. */
+static void edge_of(const noc_scene *scene, size_t t, int edge, const float **a, const float **b) {
+    const float *v[3] = { corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2) };
+    double area = ((double)v[1][0] - v[0][0]) * ((double)v[2][1] - v[0][1]) -
+                  ((double)v[1][1] - v[0][1]) * ((double)v[2][0] - v[0][0]);
+    *a = v[area > 0 ? edge : (edge + 1) % 3];
+    *b = area == 0 ? *a : v[area > 0 ? (edge + 1) % 3 : edge];
+}
+
+/* Bits of the edges of a triangle of road that are too short or have road on their other side. */
+static unsigned inner_edges(inference *in, size_t t) {
+    unsigned bits = 0;
+    for (int i = 0; i < 3; i++) {
+        const float *a, *b;
+        edge_of(in->scene, t, i, &a, &b);
+        double dx = (double)b[0] - a[0], dy = (double)b[1] - a[1];
+        if (!(dx * dx + dy * dy >= .25) || road_beside(in, a, b, .3))
+            bits |= 1u << i;
+    }
+    return bits;
 }
 
 /* The outer edges of roads: those with no road on their other side. */
 static void along_roads(inference *in, int round) {
-    size_t triangles = in->scene->triangle_light.len;
-    for (size_t t = 0; t < triangles && go_on(in); t++) {
-        in->done = (round + (double)t / (double)triangles) / 2;
+    for (size_t t = 0; t < in->triangles && go_on(in); t++) {
+        in->done = (round + (double)t / (double)in->triangles) / 2;
         if (class_of(in->scene, t) != NOC_CLASS_ROAD)
             continue;
-        const float *v[3] = { corner(in->scene, t, 0), corner(in->scene, t, 1), corner(in->scene, t, 2) };
-        double area = ((double)v[1][0] - v[0][0]) * ((double)v[2][1] - v[0][1]) -
-                      ((double)v[1][1] - v[0][1]) * ((double)v[2][0] - v[0][0]);
+        if (round == 0)
+            in->inner[t] = (uint8_t)inner_edges(in, t);
         for (int i = 0; i < 3; i++) {
-            /* counter-clockwise seen from above, so that right of the edge is outside; arrays may have moved meanwhile
-             */
-            const float *a = corner(in->scene, t, area > 0 ? i : (i + 1) % 3);
-            const float *b = corner(in->scene, t, area > 0 ? (i + 1) % 3 : i);
-            if (area != 0 && hypot((double)b[0] - a[0], (double)b[1] - a[1]) >= .5 && !road_beside(in->scene, a, b, .3))
+            const float *a, *b;
+            edge_of(in->scene, t, i, &a, &b); /* arrays may have moved meanwhile */
+            if (!(in->inner[t] >> i & 1))
                 along_edge(in, a, b, KERB_DISTANCE, false);
         }
     }
@@ -171,9 +198,8 @@ static void along_roads(inference *in, int round) {
 
 /* In front of walls, seen from above: the lower edge of each wall triangle that begins near the ground. */
 static void around_buildings(inference *in) {
-    size_t triangles = in->scene->triangle_light.len;
-    for (size_t t = 0; t < triangles && go_on(in); t++) {
-        in->done = (double)t / (double)triangles;
+    for (size_t t = 0; t < in->triangles && go_on(in); t++) {
+        in->done = (double)t / (double)in->triangles;
         if (class_of(in->scene, t) != NOC_CLASS_WALL)
             continue;
         int low = 0;
@@ -196,13 +222,21 @@ static void around_buildings(inference *in) {
 
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights) {
-    inference in = {
-        .scene = scene, .params = params, .issues = issues, .progress = progress, .spots = noc_calloc(1, sizeof(spots))
-    };
+    inference in = { .scene = scene,
+                     .params = params,
+                     .issues = issues,
+                     .progress = progress,
+                     .spots = noc_calloc(1, sizeof(spots)),
+                     .triangles = scene->triangle_light.len };
     noc_scene_info info;
     *lights = 0;
-    if (!in.spots)
+    in.most_looks = MOST_LOOKS + LOOKS_A_TRIANGLE * in.triangles;
+    in.inner = noc_alloc(NOC_MAX(in.triangles, 1u));
+    if (!in.spots || !in.inner) {
+        free(in.spots);
+        free(in.inner);
         return noc_scene_out_of_memory(scene);
+    }
     noc_scene_get_info(scene, &info);
     bool roads = info.triangles_by_class[NOC_CLASS_ROAD] > 0;
     in.spots->spacing = roads ? ROAD_SPACING : WALL_SPACING;
@@ -213,8 +247,15 @@ noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, co
     }
     if (!roads)
         around_buildings(&in);
+    if (in.looks + in.spots->looks > in.most_looks)
+        noc_warn(
+            scene->log,
+            "lamps by a rule end after %d: so many edges of roads or walls lie over one another that finding where "
+            "the others stand would take too long",
+            in.lamps);
     array_free(&in.spots->list);
     free(in.spots);
+    free(in.inner);
     *lights = in.lights;
     return scene->no_memory ? NOC_ERR_MEMORY : in.cancelled ? NOC_ERR_CANCELLED : NOC_OK;
 }

@@ -407,11 +407,16 @@ static void cast(vertical_ray *r) {
 }
 
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z) {
+    return noc_scene_highest_within(scene, classes, x, y, z, &(size_t){ 0 });
+}
+
+bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
         return false;
     vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .best = -DBL_MAX };
     if (scene->triangle_light.len)
         cast(&r);
+    *looks += r.looked_at;
     if (classes >> NOC_CLASS_LAMP & 1)
         noc_bodies_highest(scene, x, y, &r.best);
     if (r.best == -DBL_MAX)

@@ -569,6 +569,8 @@ noc_status noc_ground_ready(const noc_scene *scene);
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);
+/* The same; adds to *looks the triangles that were looked at, for who bounds them. */
+bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks);
 /* Returns true if vertical rays can meet something of these classes anywhere. */
 bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes);
 /* How many triangles a ray at (x, y) looks at: what a query costs. */

@@ -197,11 +197,29 @@ static void test_ground_is_bounded(void **state) {
     assert_non_null(strstr(told, "it is found in steps 2."));
 }
 
+/* Roads that lie over one another: a triangle's edges are looked at beside all others. Beyond a bound the rule ends,
+ * and says so. */
+static void test_infer_is_bounded(void **state) {
+    (void)state;
+    for (int many = 0; many < 2; many++) {
+        noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
+        noc_scene *scene = noc_scene_create(log);
+        *told = 0;
+        for (int i = 0; i < (many ? 5000 : 50); i++)
+            add_plane(scene, NOC_CLASS_ROAD, -100, -4 - 1e-4 * i, 100, 4, 0, 0);
+        assert_true(infer(scene) >= (many ? 0 : 8));
+        assert_int_equal(strstr(told, "lamps by a rule end after") != NULL, many);
+        noc_scene_destroy(scene);
+        noc_log_destroy(log);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_infer_cancelled), cmocka_unit_test(test_infer_roads),
-        cmocka_unit_test(test_infer_buildings), cmocka_unit_test(test_skirts),
-        cmocka_unit_test(test_add_ground),      cmocka_unit_test(test_ground_is_bounded),
+        cmocka_unit_test(test_infer_cancelled),  cmocka_unit_test(test_infer_roads),
+        cmocka_unit_test(test_infer_buildings),  cmocka_unit_test(test_skirts),
+        cmocka_unit_test(test_add_ground),       cmocka_unit_test(test_ground_is_bounded),
+        cmocka_unit_test(test_infer_is_bounded),
     };
     return cmocka_run_group_tests_name("city/infer", tests, NULL, NULL);
 }
