@@ -116,7 +116,7 @@ cp "$gml" house.gml
 run render house.gml worse.csv --strict --frames 1 --size 32x18 -o x.png
 test $status = 1 && grep -Eq 'UUID_0{40}, ' err &&
     ! grep -Eq 'UUID_[0-9]{0,39}([^0-9]|$)' err &&
-    grep -Eq 'height of a lamp not understood or implausible(;|$)' err
+    grep -Eq '(height of a lamp|colour temperature) not understood or implausible(: "[^"]*")?(;|$)' err
 result $? "and --strict, where there is room"
 python3 - "$gml" >twin.gml <<'END'
 import re, sys
