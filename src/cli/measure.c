@@ -27,6 +27,8 @@ static const noc_option *options(void) {
           "of --points: a plane's illuminance, or semicylindrical, cylindrical, hemispherical" },
         { "region", "Measure", NOC_OPTION_TEXTS, offsetof(A, regions), 0, 0, NULL, "REGION",
           "figures of a place, as nocturne influence has it: street:NAME or polygon:FILE|WKT; repeatable" },
+        { "streets", "Measure", NOC_OPTION_TEXT, offsetof(A, streets), 0, 0, NULL, "FILE",
+          "figures of each street that has a name, as lines of GeoJSON (streets.geojson); - = standard output" },
         { "error", "Measure", NOC_OPTION_REAL, offsetof(A, error), 1e-4, 1, NULL, "",
           "relative standard error that 3 of 4 readings are to have; of what is darker than 0.1 lx, of that" },
         { "samples", "Measure", NOC_OPTION_INT, offsetof(A, samples), 8, 1 << 24, NULL, "",
@@ -51,12 +53,13 @@ static const measure_args defaults = {
 
 const cli_command cli_measure = {
     "measure",
-    "INPUT... -o LUX.tif | --points FILE | --region REGION",
+    "INPUT... -o LUX.tif | --points FILE | --region REGION | --streets FILE",
     "Measures illuminance as a luxmeter does: of the ground as a raster for QGIS, at points, or of a street.",
     "Examples\n"
     "  nocturne measure town.yaml --grid 1 -o lux.tif\n"
     "  nocturne measure city.gml lamps.geojson --on road,sidewalk --te 678000,5403300,678200,5403500 -o lux.tif\n"
     "  nocturne measure town.yaml --region \"street:Am Stein\"\n"
+    "  nocturne measure town.yaml --streets streets.geojson\n"
     "  nocturne measure town.yaml --points points.txt -o lux.csv\n"
     "Lamps and the sky count (--sky 0: lamps alone), direct light alone. Coordinates are in the scene's CRS, of scenes "
     "that have none local metres.\n",
@@ -101,10 +104,13 @@ static int check_file(const measure_args *args) {
 static int check_what(const measure_args *args) {
     if (!args->render.common.input_count)
         return cli_usage(&cli_measure, CLI_SITE_NEEDED);
-    if (!args->render.output && !args->points && !args->regions.count)
-        return cli_usage(&cli_measure, "what is to be measured? -o lux.tif, --points FILE, or --region street:NAME");
-    if (args->points && args->regions.count)
-        return cli_usage(&cli_measure, "--points and --region exclude each other");
+    if (!args->render.output && !args->points && !args->regions.count && !args->streets)
+        return cli_usage(&cli_measure, "what is to be measured? -o lux.tif, --points FILE, --region street:NAME, or "
+                                       "--streets streets.geojson");
+    if (args->points && (args->regions.count || args->streets))
+        return cli_usage(&cli_measure, "--points and --%s exclude each other", args->streets ? "streets" : "region");
+    if (args->streets && !strcmp(args->streets, "-") && (args->regions.count || args->render.output))
+        return cli_usage(&cli_measure, "--streets - writes to standard output, and nothing beside it may");
     for (size_t i = 0; i < args->regions.count; i++)
         if (!strncmp(args->regions.text[i], "object:", 7))
             return cli_usage(&cli_measure, "--region object:ID has surfaces, not points: nocturne influence has their "
@@ -132,6 +138,8 @@ static int check(measure_job *job) {
     status = status ? status : parse_extent(job);
     status = status ? status : cli_parse_classes(&cli_measure, "--on", args->on, &job->raster.classes);
     status = status ? status : cli_site_check(render);
+    if (!status && args->streets && strcmp(args->streets, "-"))
+        status = cli_check_output(&cli_measure, args->streets, CLI_ANY, &render->common);
     return status || !render->output || to_stdout(args)
                ? status
                : cli_check_output(&cli_measure, render->output, CLI_ANY, &render->common);
@@ -146,6 +154,8 @@ static noc_status work(void *user) {
     noc_status status = args->points ? measure_read_points(args, &points) : NOC_OK;
     /* A plan of street lighting may not rely on windows. */
     status = status ? status : cli_site_open(&job->site, &args->render, !args->count_windows, args->render.output);
+    if (!status && args->streets && cli_check_sources(job->site.scene, args->streets))
+        status = NOC_ERR_ARGUMENT;
     job->params = (noc_measure_params){ &args->render.render, args->error, 0.1, args->samples };
     job->raster.crs = args->crs;
     job->raster.step = args->grid;
@@ -155,6 +165,7 @@ static noc_status work(void *user) {
         status = measure_points(job, &points);
     measure_free_points(&points);
     status = status || !args->regions.count ? status : measure_regions(job);
+    status = status || !args->streets ? status : measure_streets(job);
     return status || !args->render.output || args->points ? status : measure_raster(job);
 }
 

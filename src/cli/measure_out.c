@@ -5,26 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is told of a set of readings. */
-typedef struct told {
-    const char *what; /* the region, or the raster's file */
-    double area;      /* m2; 0: it has none */
-    noc_lux_figures figures;
-    noc_measure_info info;
-    const noc_lux_least *least; /* NULL: its figures have the least reading alone */
-    double least_at[2];         /* in the scene's CRS */
-    size_t left_out;            /* places where something stands on the ground */
-} told;
-
-static void json_figure(const char *name, double v) {
-    printf(",\n  \"%s\": ", name);
-    cli_json_number(stdout, v);
+static void json_figure(FILE *out, const char *before, const char *name, double v) {
+    fprintf(out, ",%s\"%s\": ", before, name);
+    cli_json_number(out, v);
 }
 
-static void print_json(measure_job *job, const told *t) {
+void measure_json_figures(FILE *out, const measure_job *job, const measure_told *t, const char *before) {
     static const noc_lux_least none = { 0, NAN, NAN, NAN, NAN, 0, 0, NAN, NAN };
     const noc_lux_figures *f = &t->figures;
-    const noc_lux_least *l = t->least ? t->least : &none;
+    const noc_lux_least *l = t->has_least ? &t->least : &none;
     const struct {
         const char *name;
         double value;
@@ -36,38 +25,42 @@ static void print_json(measure_job *job, const told *t) {
                  { "minimum_error", l->error },
                  { "minimum_low", l->low },
                  { "minimum_high", l->high },
-                 { "minimum_candidates", t->least ? (double)l->candidates : NAN },
-                 { "minimum_x", t->least ? t->least_at[0] : NAN },
-                 { "minimum_y", t->least ? t->least_at[1] : NAN },
+                 { "minimum_candidates", t->has_least ? (double)l->candidates : NAN },
+                 { "minimum_x", t->has_least ? t->least_at[0] : NAN },
+                 { "minimum_y", t->has_least ? t->least_at[1] : NAN },
                  { "least_reading", f->least },
                  { "maximum", f->most },
                  { "uniformity", l->uniformity },
                  { "uniformity_error", l->uniformity_error },
-                 { "left_out", t->least ? (double)t->left_out : NAN },
+                 { "left_out", t->has_least ? (double)t->left_out : NAN },
                  { "percentile_5", f->low },
                  { "median", f->median },
                  { "percentile_95", f->high },
                  { "reading_error", t->info.error },
                  { "readings_over_error", (double)t->info.short_of_it },
                  { "maintenance", job->site.info.maintenance },
-                 { "sky", job->args->render.render.sky },
-                 { "seconds", t->info.seconds } };
+                 { "sky", job->args->render.render.sky } };
+    if (t->has_least)
+        fprintf(out, ",%s\"minimum_resolved\": %s", before, l->candidates == 1 ? "true" : "false");
+    fprintf(out, ",%s\"windows_counted\": %s", before, job->args->count_windows ? "true" : "false");
+    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
+        json_figure(out, before, rows[i].name, rows[i].value);
+}
+
+static void print_json(const measure_job *job, const measure_told *t) {
     printf("%s{\"nocturne\": \"%s\", \"measured\": ", job->lead, noc_version());
     cli_json_text(stdout, t->what);
     printf(",\n  \"crs\": ");
     cli_json_text(stdout, job->site.info.given_crs);
-    if (t->least)
-        printf(",\n  \"minimum_resolved\": %s", l->candidates == 1 ? "true" : "false");
-    printf(",\n  \"windows_counted\": %s", job->args->count_windows ? "true" : "false");
-    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
-        json_figure(rows[i].name, rows[i].value);
+    measure_json_figures(stdout, job, t, "\n  ");
+    json_figure(stdout, "\n  ", "seconds", t->info.seconds);
     printf("}");
 }
 
-static void print_least(const told *t) {
-    const noc_lux_least *l = t->least;
+static void print_least(const measure_told *t) {
+    const noc_lux_least *l = &t->least;
     char count[32];
-    if (!l) {
+    if (!t->has_least) {
         printf("  minimum     %.4g lx of single readings, too low by their noise: --region has one with its error\n",
                t->figures.least);
         return;
@@ -85,7 +78,7 @@ static void print_least(const told *t) {
         printf("  Uo          %.3g ± %.2g, minimum over mean\n", l->uniformity, l->uniformity_error);
 }
 
-static void print_text(measure_job *job, const told *t) {
+static void print_text(measure_job *job, const measure_told *t) {
     const noc_lux_figures *f = &t->figures;
     char count[32], area[32], time[32];
     printf("%s%s: %s readings", job->lead, t->what, noc_text_count(count, f->readings));
@@ -108,7 +101,7 @@ static void print_text(measure_job *job, const told *t) {
     printf("  windows %s\n", job->args->count_windows ? "count" : "are dark (--count-windows)");
 }
 
-static void tell(measure_job *job, const told *t) {
+static void tell(measure_job *job, const measure_told *t) {
     if (job->args->json)
         print_json(job, t);
     else
@@ -119,14 +112,15 @@ static void tell(measure_job *job, const told *t) {
 /* ---- regions ---- */
 
 /* Its parts are points: a place, or one in each cell of the ground. */
-static noc_status find_meters(measure_job *job, const char *text, noc_meter **meters, noc_region_info *info) {
+static noc_status find_meters(measure_job *job, const char *text, noc_log *log, noc_meter **meters,
+                              noc_region_info *info) {
     const noc_render_params *render = &job->args->render.render;
     noc_region_params of = { .camera = &job->site.camera,
                              .width = render->width,
                              .height = render->height,
                              .crs = job->args->crs,
                              .files = true };
-    noc_region *region = noc_region_find(job->site.view, job->site.scene, text, &of, job->site.log);
+    noc_region *region = noc_region_find(job->site.view, job->site.scene, text, &of, log);
     if (!region)
         return NOC_ERR_ARGUMENT;
     noc_region_get_info(region, info);
@@ -144,41 +138,39 @@ static noc_status find_meters(measure_job *job, const char *text, noc_meter **me
 }
 
 static noc_status figures_of(measure_job *job, const noc_meter *meters, size_t count, noc_reading *readings, float *lux,
-                             told *t, noc_lux_least *least) {
+                             measure_told *t) {
     noc_view *view = job->site.view;
     noc_status status = noc_measure_points(view, meters, count, &job->params, &job->progress, readings, &t->info);
     for (size_t i = 0; i < count; i++)
         lux[i] = (float)readings[i].lux;
     status = status ? status : noc_lux_figures_of(lux, NULL, count, &t->figures, job->site.log);
-    status = status ? status
-                    : noc_measure_least(view, meters, count, readings, &t->info, &job->params, &job->progress, least);
+    status = status
+                 ? status
+                 : noc_measure_least(view, meters, count, readings, &t->info, &job->params, &job->progress, &t->least);
     cli_progress_clear();
     if (status)
         return status;
     double at[3];
-    memcpy(at, meters[least->meter].place, sizeof(at));
+    memcpy(at, meters[t->least.meter].place, sizeof(at));
     if (*job->site.info.given_crs)
         status = noc_scene_from_local(job->site.scene, NULL, at);
     memcpy(t->least_at, at, sizeof(t->least_at));
-    t->least = least;
+    t->has_least = true;
     return status;
 }
 
-static noc_status measure_region(measure_job *job, const char *text) {
+noc_status measure_told_region(measure_job *job, const char *region, noc_log *log, measure_told *t) {
     noc_meter *meters = NULL;
     noc_region_info info;
-    noc_lux_least least;
-    told t = { .what = text };
-    noc_status status = find_meters(job, text, &meters, &info);
+    *t = (measure_told){ .what = region };
+    noc_status status = find_meters(job, region, log, &meters, &info);
     if (status)
         return status;
     noc_reading *readings = cli_alloc(info.patches * sizeof(*readings));
     float *lux = cli_alloc(info.patches * sizeof(*lux));
-    status = figures_of(job, meters, info.patches, readings, lux, &t, &least);
-    t.area = strncmp(text, "street:", 7) && strncmp(text, "polygon:", 8) ? 0 : info.weight;
-    t.left_out = info.left_out;
-    if (!status)
-        tell(job, &t);
+    status = figures_of(job, meters, info.patches, readings, lux, t);
+    t->area = strncmp(region, "street:", 7) && strncmp(region, "polygon:", 8) ? 0 : info.weight;
+    t->left_out = info.left_out;
     free(lux);
     free(readings);
     free(meters);
@@ -190,8 +182,12 @@ noc_status measure_regions(measure_job *job) {
     bool array = job->args->json && regions->count > 1;
     noc_status status = NOC_OK;
     job->lead = array ? "[\n" : "";
-    for (size_t i = 0; i < regions->count && !status; i++)
-        status = measure_region(job, regions->text[i]);
+    for (size_t i = 0; i < regions->count && !status; i++) {
+        measure_told t;
+        status = measure_told_region(job, regions->text[i], job->site.log, &t);
+        if (!status)
+            tell(job, &t);
+    }
     if (job->args->json && *job->lead == ',')
         puts(array ? "\n]" : "");
     return status;
@@ -199,7 +195,7 @@ noc_status measure_regions(measure_job *job) {
 
 /* ---- the raster ---- */
 
-static noc_status tell_raster(measure_job *job, const noc_raster *r, told *t) {
+static noc_status tell_raster(measure_job *job, const noc_raster *r, measure_told *t) {
     size_t area = (size_t)r->width * (size_t)r->height;
     noc_status status = noc_lux_figures_of(r->lux, r->share, area, &t->figures, job->site.log);
     if (status)
@@ -215,7 +211,7 @@ static noc_status tell_raster(measure_job *job, const noc_raster *r, told *t) {
 
 noc_status measure_raster(measure_job *job) {
     const measure_args *args = job->args;
-    told t = { .what = args->render.output };
+    measure_told t = { .what = args->render.output };
     char sky[32], maintenance[32], error[32], key[NOC_CONTENT_KEY];
     job->lead = job->lead ? job->lead : "";
     noc_raster *r = noc_measure_raster(job->site.view, &job->raster, &job->params, &job->progress, &t.info);

@@ -44,6 +44,30 @@ assert raster['minimum'] is None and raster['uniformity'] is None and 'minimum_r
 PY
     result $? "raster, street and nocturne influence agree"
 
+    sed '/<\/osm>/d' map.osm >two.osm
+    cat >>two.osm <<'OSM'
+<node id="31" lat="52.5004000" lon="13.4000000"/><node id="32" lat="52.5004000" lon="13.4004000"/>
+<way id="22"><nd ref="31"/><nd ref="32"/><tag k="highway" v="residential"/>
+<tag k="name" v="Old &quot;Quay&quot;"/></way>
+</osm>
+OSM
+    run measure two.osm --map-surfaces -q --sky 0 --streets streets.geojson && cp out said
+    run measure two.osm --map-surfaces -q --sky 0 --region "street:Well Lane" --json && cp out street.json
+    run measure two.osm --map-surfaces -q --sky 0 --streets - && cmp out streets.geojson &&
+        grep -q '^streets.geojson: 2 streets$' said && python3 - <<'PY'
+import json
+layer, alone = json.load(open('streets.geojson')), json.load(open('street.json'))
+assert [f['properties']['street'] for f in layer['features']] == ['Old "Quay"', 'Well Lane'], layer
+quay, lane = layer['features']
+assert all(lane['properties'][k] == v for k, v in alone.items() if k in lane['properties']), (lane, alone)
+assert {'mean', 'minimum', 'uniformity', 'area', 'percentile_95'} <= set(lane['properties'])
+for f, east, lat in (quay, 13.4004, 52.5004), (lane, 13.401, 52.5):
+    assert f['geometry']['type'] == 'MultiLineString'
+    (a, b), = f['geometry']['coordinates']
+    assert abs(a[0] - 13.4) < 1e-6 and abs(b[0] - east) < 1e-6 and a[1] == b[1] == lat, f
+PY
+    result $? "figures of all streets as a layer"
+
     start measure map.osm --map-surfaces --sky 0 --grid 0.02 --error 0.0001 -o never.tif
     sleep 1
     kill -INT "$pid"
@@ -52,7 +76,8 @@ PY
     result $? "interrupted, it leaves nothing"
 else
     for what in "the ground of a map as a raster" "the same bytes for any number of threads" \
-        "raster, street and nocturne influence agree" "interrupted, it leaves nothing"; do
+        "raster, street and nocturne influence agree" "figures of all streets as a layer" \
+        "interrupted, it leaves nothing"; do
         skip "$what" "without GDAL"
     done
 fi
@@ -132,6 +157,14 @@ for option in "--on road" "--te 0,0,9,9" "--grid 2"; do
     expect "${option%% *} is not for points" 2 "${option%% *} is for a raster" \
         measure builtin:single --points points.txt -o a.csv $option
 done
+expect "a city without streets" 1 'the city has no street with a name: add the map of its roads' \
+    measure builtin:single -q --streets a.tif
+expect "streets are not points" 2 '--points and --streets exclude each other' \
+    measure builtin:single --points points.txt --streets a.tif
+expect "one thing goes to standard output" 2 '--streets - writes to standard output' \
+    measure builtin:single --streets - --region point:0,0
+expect "streets are not written over an input" 1 'map.osm is an input too .map.osm.; it would be overwritten' \
+    measure map.osm --streets ./map.osm
 expect "points have their heights" 2 '--meter-height is for a raster' \
     measure builtin:single --points points.txt --meter-height 1
 expect "points are not written over" 1 'points.txt has the points of --points' \
