@@ -87,6 +87,12 @@ static void test_watts(void **state) {
         { "120/240V", 0, 0, "wattage not understood" },
         { "2x2x36 W", 0, 0, "wattage not understood" },
         { "0", 0, 0, "wattage of 0" },
+        { "60%", 0, 0, "wattage not understood" },
+        { "70W 50%", 70, 0, "first taken" },
+        { "(2) 70W", 70, 2, "" },
+        { "2 pcs 70W", 70, 2, "" },
+        { "24 LED x 3W", 72, 0, "" },
+        { "70\xc2\xa0W", 70, 0, "" },
     };
     (void)state;
     check("lamp_wattage", rows, NOC_COUNT(rows), watts_of);
@@ -108,6 +114,18 @@ static void test_heights(void **state) {
         { "8-6", 8, 0, "first taken" },
         { "6.5.2", 0, 0, "not understood" },
         { "0", 0, 0, "height of a lamp of 0" },
+        { "20\xc2\xa0"
+          "ft",
+          6.096, 0, "" },
+        { "20\xe2\x80\xaf"
+          "ft",
+          6.096, 0, "" },
+        { "20\xe2\x80\xb2", 6.096, 0, "" },
+        { "20\xe2\x80\x99", 6.096, 0, "" },
+        { "20\xc2\xb4", 6.096, 0, "" },
+        { "16\xe2\x80\xb2 6\xe2\x80\xb3", 5.0292, 0, "" },
+        { "16'6''", 5.0292, 0, "" },
+        { "8 m/W", 0, 0, "not understood" },
     };
     (void)state;
     check("lamp_height", rows, NOC_COUNT(rows), height_of);
@@ -122,11 +140,14 @@ static void test_light(void **state) {
         { "2700-3000K", 2850, 0, "middle taken" },
         { "3000.5.1", 0, 0, "colour temperature not understood" },
         { "0", 0, 0, "colour temperature of 0" },
+        { "3000+4000", 3000, 0, "first taken" },
     };
     static const row lumens[] = {
         { "2 x 1000 lm", 1000, 2, "" },      { "4,000 + 500", 4500, 0, "" },
         { "3000/4000", 3000, 0, "first" },   { "3000-4000 lm", 3500, 0, "middle taken" },
         { "0", 0, 0, "luminous flux of 0" }, { "4000 lm equivalent", 0, 0, "luminous flux not understood" },
+        { "110 lm/W", 0, 0, "not" },         { "110 lm per W", 0, 0, "not" },
+        { "4000 lm/40 W", 4000, 0, "" },     { "60%", 0, 0, "not" },
     };
     static const row counts[] = {
         { "2", 2, 2, "" },      { "1+1", 2, 2, "" },       { "1-2", 0, 0, "number of lamps on a pole not" },
@@ -165,6 +186,9 @@ static void test_descriptions(void **state) {
         { "NAV-T70", 70, 0, 0, LAMP_ONE },
         { "NAV-T 70-4Y", 70, 0, 0, LAMP_ONE },
         { "HQL 2x125", 125, 0, 0, LAMP_ONE },
+        { "LED 70W 110 lm/W", 70, 0, 0, LAMP_ONE },
+        { "LED 110lm/W 70W", 70, 0, 0, LAMP_ONE },
+        { "LED 60%", 0, 0, 0, LAMP_ONE },
     };
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(rows); i++) {
@@ -174,6 +198,24 @@ static void test_descriptions(void **state) {
         if (watts != rows[i].watts || lumens != rows[i].lumens || kelvin != rows[i].kelvin ||
             m.choice != rows[i].choice)
             fail_msg("%s: %g W, %g lm, %g K, choice %d", rows[i].text, watts, lumens, kelvin, (int)m.choice);
+    }
+}
+
+/* How many heads a description tells beside its watts. */
+static void test_heads(void **state) {
+    static const struct {
+        const char *text;
+        int heads;
+    } rows[] = {
+        { "(2) 70W HPS", 2 }, { "2 pcs 70W HPS", 2 },  { "70W HPS x 2", 2 },
+        { "HPS 70W x2", 2 },  { "70W HPS x 2.5", 0 },  { "HPS 70W (2)", 0 },
+        { "70W HPS", 0 },     { "(2019) 70W HPS", 0 }, { "70W HPS x 2m", 0 },
+    };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        const lamp_model m = lamp_model_of(rows[i].text, false, 0);
+        if (m.heads != rows[i].heads || m.watts != 70)
+            fail_msg("%s: %d heads, %g W", rows[i].text, m.heads, m.watts);
     }
 }
 
@@ -236,6 +278,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_watts),  cmocka_unit_test(test_heights),      cmocka_unit_test(test_light),
         cmocka_unit_test(test_shares), cmocka_unit_test(test_descriptions), cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_heads),
     };
     return cmocka_run_group_tests_name("import/lamp_numbers", tests, NULL, NULL);
 }

@@ -38,9 +38,11 @@ static void test_directions(void **state) {
     static const struct {
         const char *text;
         double degrees;
-    } good[] = { { "0", 0 },       { "360", 0 },          { "135.5", 135.5 }, { "N", 0 },
-                 { "nnw", 337.5 }, { "South-West", 225 }, { "90 deg", 90 },   { "-90", 270 } };
-    static const char *const bad[] = { "", "both", "forward", "0-360", "90;270", "400", "NNNW" };
+    } good[] = { { "0", 0 },           { "360", 0 },          { "135.5", 135.5 }, { "N", 0 },
+                 { "nnw", 337.5 },     { "South-West", 225 }, { "90 deg", 90 },   { "-90", 270 },
+                 { "45\xc2\xb0", 45 }, { "45 Grad", 45 },     { "45 (NE)", 45 } };
+    static const char *const bad[] = { "",       "both",    "forward", "0-360", "90;270", "400",    "NNNW",
+                                       "50 gon", "0.5 rad", "1e2",     "12:30", "2x45",   "45.5.1", "45%" };
     double v;
     for (size_t i = 0; i < NOC_COUNT(good); i++) {
         assert_true(lamp_direction(good[i].text, &v));

@@ -10,6 +10,7 @@ enum { MOST_TOKENS = 32, TOKEN_SIZE = 24 };
 typedef struct token {
     const char *at;     /* in the text */
     bool number, glued; /* to what is before it */
+    bool brackets;      /* a number alone in them */
     double value;
     char word[TOKEN_SIZE]; /* folded */
     bool source;           /* a word of a source, or of what belongs to its name */
@@ -50,6 +51,7 @@ static void split(const char *text, char decimal, tokens *t) {
         glued = true;
         if (isdigit((unsigned char)*p) && (end = lamp_scan_number(p, true, decimal, &one->value))) {
             one->number = true;
+            one->brackets = p > text && p[-1] == '(' && *end == ')';
             p = end;
         } else if (n || times) {
             char copy[2 * TOKEN_SIZE];
@@ -135,14 +137,41 @@ static bool beside_source(const tokens *t, size_t i, size_t next) {
 
 static bool within(double value, double least, double most) { return value >= least && value <= most; }
 
-/* "50 x LED 1W": the number before the sign, with a source's name between at most; 0: none. */
+static bool is_piece_word(const char *word) {
+    static const char *const words[] = { "pc", "pcs", "pieces", "stk", "stck", "stuck", "stuk", "nos", "uds", "szt" };
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(word, words[i]))
+            return true;
+    return false;
+}
+
+/* How many the number i tells; 0: none. */
+static int heads_of(const tokens *t, size_t i) {
+    double n = i < t->count && t->list[i].number ? t->list[i].value : 0;
+    return within(n, 1, 99) && n == floor(n) ? (int)n : 0;
+}
+
+/* "50 x LED 1W", "24 LED x 3W", "2 pcs 70W", "(2) 70W": the number before what is between at most a source's name; 0:
+ * none. */
 static int times_before(const tokens *t, size_t i) {
     while (i && t->list[i - 1].source)
         i--;
-    if (i < 2 || !is_word(t, i - 1, "x") || !t->list[i - 2].number)
+    if (i && t->list[i - 1].brackets)
+        return heads_of(t, i - 1);
+    if (i < 2 || t->list[i - 1].number || !(is_word(t, i - 1, "x") || is_piece_word(t->list[i - 1].word)))
         return 0;
-    double n = t->list[i - 2].value;
-    return within(n, 1, 99) && n == floor(n) ? (int)n : 0;
+    i -= 2;
+    while (i && t->list[i].source)
+        i--;
+    return heads_of(t, i);
+}
+
+/* "70W HPS x 2": the number behind, with a source's name between at most; 0: none. */
+static int times_behind(const tokens *t, size_t next) {
+    while (next < t->count && t->list[next].source)
+        next++;
+    bool last = next + 2 == t->count || (next + 2 < t->count && !t->list[next + 2].glued);
+    return is_word(t, next, "x") && last ? heads_of(t, next + 1) : 0;
 }
 
 static bool is_head_word(const char *word) {
@@ -196,7 +225,8 @@ static size_t token_at(const tokens *t, size_t from, const char *end) {
 /* Watts of the numbers from i on. next: the token behind them. */
 static void read_watts(const tokens *t, size_t i, size_t next, const lamp_number *n, bool watts_column, lamp_model *m) {
     const token *w = &t->list[i];
-    int times = n->times > 1 ? n->times : times_before(t, i);
+    int before = times_before(t, i);
+    int times = n->times > 1 ? n->times : before ? before : n->unit ? times_behind(t, next) : 0;
     bool many = n->times > 1 || n->choice == LAMP_HEADS_EACH || within(w->value, 4, 1500);
     bool unit = n->unit && within(n->value, .5, LAMP_MOST_WATTS);
     bool bare = !n->unit && many && within(n->value, 4, 1500) && !is_word(t, next, "x") &&

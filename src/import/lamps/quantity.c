@@ -15,7 +15,21 @@ typedef struct term {
     const char *end;
 } term;
 
-static const char *skip_blanks(const char *s) { return s + strspn(s, " \t~"); }
+typedef struct length_mark {
+    const char *text;
+    double metres;
+} length_mark;
+
+/* Blanks, those of typesetters too: no-break, thin, narrow no-break. */
+static const char *skip_blanks(const char *s) {
+    static const char *const blanks[] = { " ", "\t", "~", "\xc2\xa0", "\xe2\x80\x89", "\xe2\x80\xaf" };
+    for (size_t i = 0; i < NOC_COUNT(blanks); i++)
+        if (!strncmp(s, blanks[i], strlen(blanks[i]))) {
+            s += strlen(blanks[i]);
+            i = (size_t)-1; /* again from the first */
+        }
+    return s;
+}
 
 static bool is_digit(char c) { return isdigit((unsigned char)c); }
 
@@ -54,39 +68,72 @@ static size_t times_sign(const char *p) {
     return x || *p == '*' || *p == '@' ? 1 : !strncmp(p, "\xc3\x97", 2) ? 2 : 0;
 }
 
+/* The sign of feet or inches at p, as keyboards, typographers and prime signs have it; NULL: none. */
+static const length_mark *length_sign(const char *p) {
+    static const length_mark signs[] = { { "''", .0254 },           { "'", .3048 },
+                                         { "\"", .0254 },           { "\xc2\xb4", .3048 },
+                                         { "\xe2\x80\x99", .3048 }, { "\xe2\x80\x9d", .0254 },
+                                         { "\xe2\x80\xb2", .3048 }, { "\xe2\x80\xb3", .0254 } };
+    for (size_t i = 0; i < NOC_COUNT(signs); i++)
+        if (!strncmp(p, signs[i].text, strlen(signs[i].text)))
+            return &signs[i];
+    return NULL;
+}
+
 /* Inches behind feet: "16'6\"", "16 ft 6 in". Returns the position behind them. */
-static const char *add_inches(const char *p, char decimal, bool sign, double *feet) {
+static const char *add_inches(const char *p, char decimal, bool signed_feet, double *feet) {
     double inches;
     const char *q = scan_one(skip_blanks(p), LAMP_METRES, decimal, &inches), *r = q ? skip_blanks(q) : NULL;
     char word[WORD];
     size_t n = r ? read_word(r, word) : 0;
-    bool named = r && (*r == '"' || (n && (!strcmp(word, "in") || !strcmp(word, "inch") || !strcmp(word, "inches"))));
-    if (!r || (!named && !sign))
+    const length_mark *mark = r ? length_sign(r) : NULL;
+    bool word_named = n && (!strcmp(word, "in") || !strcmp(word, "inch") || !strcmp(word, "inches"));
+    bool named = (mark && mark->metres == .0254) || word_named;
+    if (!r || (!named && !signed_feet))
         return p;
     *feet += inches / 12;
-    return !named ? q : *r == '"' ? r + 1 : r + n;
+    return !named ? q : word_named ? r + n : r + strlen(mark->text);
+}
+
+/* "110 lm/W", "20 W/m", "60 %": a ratio is no quantity of its own. */
+static bool is_ratio(const char *p, bool unit) {
+    char word[WORD];
+    double scale;
+    const char *name;
+    if (*p == '%' || !strncmp(p, "\xe2\x80\xb0", 3))
+        return true;
+    size_t per = *p == '/' ? 1 : !strncmp(p, "per ", 4) || !strncmp(p, "pro ", 4) ? 4 : 0;
+    if (!unit || !per || !read_word(skip_blanks(p + per), word))
+        return false;
+    bool is = false;
+    for (int of = LAMP_METRES; of < LAMP_PLAIN; of++)
+        is = is || lamp_unit_word(word, (lamp_unit)of, &scale, &name);
+    return is;
 }
 
 /* The unit behind a number. False where it is one of something else. */
 static bool read_unit(term *t, lamp_unit unit, char decimal) {
     const char *q = skip_blanks(t->end), *name;
-    if (unit == LAMP_METRES && (*q == '\'' || *q == '"')) {
-        t->factor = *q == '\'' ? .3048 : .0254;
+    const length_mark *mark = unit == LAMP_METRES ? length_sign(q) : NULL;
+    if (mark) {
+        bool feet = mark->metres == .3048;
+        t->factor = mark->metres;
         t->unit = true;
-        t->end = *q == '\'' ? add_inches(q + 1, decimal, true, &t->value) : q + 1;
+        q += strlen(mark->text);
+        t->end = feet ? add_inches(q, decimal, true, &t->value) : q;
         return true;
     }
     char word[WORD];
     size_t n = times_sign(q) ? 0 : read_word(q, word);
     if (!n)
-        return true;
+        return !is_ratio(q, false);
     if (!lamp_unit_word(word, unit, &t->factor, &name))
         return q > t->end && !is_other_unit(word, unit);
     t->unit = true;
     t->end = q + n;
     if (unit == LAMP_METRES && t->factor == .3048)
         t->end = add_inches(t->end, decimal, false, &t->value);
-    return true;
+    return !is_ratio(skip_blanks(t->end), true);
 }
 
 static bool is_times(const term *t) {
@@ -190,7 +237,7 @@ static bool settle(const term *t, const joint *joints, size_t count, lamp_unit u
     }
     n->value = t[0].value;
     n->times = t[0].times;
-    if (count > 1 && sum) {
+    if (count > 1 && sum && unit != LAMP_KELVIN) { /* colours do not add up */
         n->value = 0;
         n->times = 1;
         n->terms = (int)count;
@@ -258,7 +305,8 @@ static bool has_another(const char *rest, lamp_unit unit, char decimal, const la
         bool year = (brackets || n->unit) && !t.unit && value == floor(value) && value >= 1950 && value <= 2050;
         bool same = brackets && t.unit && fabs(value - n->value) <= .05 * n->value;
         bool code = unit == LAMP_WATTS && !t.unit && lamp_colour_code(value) > 0;
-        if (read && !year && !same && !code)
+        bool share = !read && p[strspn(p, "0123456789., ")] == '%'; /* "70W 50%" */
+        if (share || (read && !year && !same && !code))
             return true;
         p += strspn(p, "0123456789.,") - 1;
     }

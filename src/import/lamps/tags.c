@@ -83,8 +83,8 @@ static bool read_quantity(reading *r, const char *text, lamp_unit unit, double l
 /* Of a number without a unit, who loads it asks which one it may be. */
 static bool read_height(reading *r, const lamp_meaning *c, const char *text) {
     lamp_number n;
-    bool unit = c->unit_named || strpbrk(text, "'\"") || *(text + strcspn(text, LETTERS));
-    if (!unit && lamp_read_quantity(text, LAMP_METRES, 1, r->decimal, &n))
+    bool unit = c->unit_named || *(text + strcspn(text, LETTERS));
+    if (!unit && lamp_read_quantity(text, LAMP_METRES, 1, r->decimal, &n) && !n.unit)
         r->lamp->bare_height = n.value;
     return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, &height_reasons, &r->lamp->height);
 }

@@ -126,6 +126,23 @@ char lamp_decimal_sign(const char *text) {
     return decimal && (!*end || isalpha((unsigned char)*end)) ? p[before] : 0;
 }
 
+/* Is what stands behind the number of a direction nothing, or the unit of degrees? "50 gon", "0.5 rad" and "12:30" are
+ * none in degrees. */
+static bool is_degrees(const char *rest) {
+    static const char *const words[] = { "", "deg", "degs", "degree", "degrees", "grad", "graden", "grados", "gradi" };
+    static const char *const signs[] = { "\xc2\xb0", "\xc2\xba", "\xcb\x9a" };
+    char folded[16];
+    for (size_t i = 0; i < NOC_COUNT(signs); i++)
+        rest += !strncmp(rest, signs[i], 2) ? 2 : 0;
+    if (*rest && !isalpha((unsigned char)*rest) && *skip_blanks(rest) != 0)
+        return *skip_blanks(rest) == '(';
+    lamp_fold(rest, false, folded, sizeof(folded));
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(folded, words[i]))
+            return true;
+    return false;
+}
+
 bool lamp_direction(const char *text, double *degrees) {
     static const struct {
         const char *name;
@@ -152,9 +169,7 @@ bool lamp_direction(const char *text, double *degrees) {
     p = lamp_scan_number(p + negative, false, 0, &x);
     if (!p || x > 360)
         return false;
-    /* a range or a list ("90-180", "90;270") names no one direction */
-    p = skip_blanks(p);
-    if (*p == '-' || *p == ';')
+    if (!is_degrees(skip_blanks(p))) /* a range or a list ("90-180", "90;270") names no one direction, either */
         return false;
     *degrees = fmod(negative ? 360 - x : x, 360);
     return true;
