@@ -131,6 +131,33 @@ static noc_status load(const char *path, const char *bbox, noc_scene_info *info,
     return status;
 }
 
+/* A TIFF of three samples a pixel, in either order of bytes, is a texture of what lies beside it; one of a single
+ * sample may be terrain. */
+static void test_pictures(void **state) {
+    static const unsigned char little[] = { 'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x15, 1, 3, 0, 1, 0, 0, 0, 3, 0, 0, 0 },
+                               big[] = { 'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 0x15, 0, 3, 0, 0, 0, 1, 0, 3, 0, 0 };
+    unsigned char single[sizeof(little)];
+    memcpy(single, little, sizeof(little));
+    single[18] = 1;
+    const unsigned char *const bytes[] = { little, big, single };
+    noc_report *report;
+    noc_scene_info info;
+    (void)state;
+    mkdir(in_folder("/textured"), 0700);
+    write_house("/textured/a.json", "a", 0, 0);
+    for (int i = 0; i < 3; i++) {
+        FILE *f = fopen(in_folder("/textured/wall.tif"), "wb");
+        assert_non_null(f);
+        assert_int_equal(fwrite(bytes[i], 1, sizeof(little), f), sizeof(little));
+        assert_int_equal(fclose(f), 0);
+        noc_status status = load(in_folder("/textured"), NULL, &info, &report);
+        assert_true((status == NOC_OK) == (i < 2));
+        assert_true((strstr(told, "1 of 2 files of the folder are in no format that is read, and left out: wall.tif") !=
+                     NULL) == (i < 2));
+        noc_report_destroy(status ? NULL : report);
+    }
+}
+
 static void test_folder(void **state) {
     noc_report *report;
     noc_scene_info info;
@@ -225,9 +252,8 @@ static void test_terrain_and_lamps(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_expansion),
-        cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_expansion),         cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_pictures),          cmocka_unit_test(test_box),
         cmocka_unit_test(test_terrain_and_lamps),
     };
     return cmocka_run_group_tests_name("import/inputs", tests, start, finish);

@@ -1,5 +1,6 @@
 /* Which reader reads an input: its beginning tells, never its name. */
 #include "import/load/load.h"
+#include "import/picture.h"
 
 #define HEAD_SIZE 65536
 
@@ -86,7 +87,7 @@ noc_status recognise_input(importer *im, input *in, const noc_reader *const *rea
     }
     free(head);
     noc_stream_close(stream);
-    in->left_out = in->folder && status && status != NOC_ERR_MEMORY;
+    in->left_out = in->folder && (status ? status != NOC_ERR_MEMORY : picture_is_tiff(in->path));
     if (in->left_out)
         return NOC_OK;
     return status == NOC_ERR_MEMORY && in->folder ? noc_no_memory(im->log, in->path) : status;
