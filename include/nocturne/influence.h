@@ -253,7 +253,7 @@ typedef struct noc_ranking_params {
  * something. */
 typedef struct noc_ranking_target {
     double seconds; /* wall clock, of this call */
-    double error;   /* relative standard error of the greatest share of an emitter that counts */
+    double error;   /* relative standard error of the lux, and of the greatest share of an emitter that counts */
     uint64_t rays;  /* of all calls */
 } noc_ranking_target;
 

@@ -19,7 +19,7 @@ static const noc_option own_options[] = {
       "write all rows as CSV, too; - = instead of the table" },
     { "json", "Influence", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
     { "error", "Influence", NOC_OPTION_REAL, offsetof(A, error), 1e-6, 1, NULL, "",
-      "relative standard error of the greatest share to end at" },
+      "relative standard error of the lux and of the greatest share to end at" },
     { "time", "Influence", NOC_OPTION_REAL, offsetof(A, time), 0, 1e6, NULL, "s",
       "time to end after, whatever the error is; 0 = any" },
     { NULL },

@@ -82,7 +82,7 @@ void noc_ranking_draw(noc_ranking *r, const noc_asking *by, int batch);
 bool noc_sums_add(ranking_sums *sums, uint32_t emitter, double value) NOC_MUST_USE;
 double noc_sums_get(const ranking_sums *sums, uint32_t emitter);
 void noc_sums_free(ranking_sums *sums);
-/* Relative standard error of the greatest share; 0: nothing lights the region. */
+/* The greater of the relative standard errors of the lux and of the greatest share; 0: nothing lights the region. */
 noc_status noc_ranking_error(const noc_ranking *r, double *error);
 
 #endif

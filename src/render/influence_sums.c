@@ -144,8 +144,8 @@ noc_status noc_ranking_error(const noc_ranking *r, double *error) {
     if (best != SIZE_MAX) {
         totals t = totals_of(r);
         spread s = spread_of(r, (uint32_t)best);
-        noc_estimate share = ratio_of(&s, &t.all);
-        *error = share.error / share.value;
+        noc_estimate share = ratio_of(&s, &t.all), lux = mean_of(&t.all);
+        *error = fmax(share.error / share.value, lux.error / lux.value);
     }
     free(sum);
     return NOC_OK;

@@ -126,6 +126,33 @@ static void windows_stand_beside(void **state) {
     noc_scene_destroy(s);
 }
 
+/* One lamp over a wide floor: its share is certain, and the lux is as sure as it is asked to be. */
+static void errors_bound_the_lux(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    int floor = of_class(s, NOC_CLASS_ROAD);
+    QUAD(s, floor, -100, -100, 0, 200, 0, 0, 0, 200, 0);
+    point_light(s, 0, 0, 8, 1000);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_view *view = own_view(s, 2, NULL);
+    noc_patch part = {
+        { -100, -100, 0 }, { 200, 0, 0 }, { 0, 200, 0 }, { 0, 0, 1 }, 40000, (uint32_t)floor, .level = 0
+    };
+    noc_region *region = region_of(&part, 1);
+    noc_render_params p = no_sky(1);
+    for (double error = .1; error > .009; error /= 10) {
+        noc_ranking *r = noc_ranking_create(view, region, &(noc_ranking_params){ .render = &p });
+        noc_influence_sum sum;
+        assert_int_equal(noc_ranking_refine(r, &(noc_ranking_target){ .error = error }, NULL), NOC_OK);
+        assert_int_equal(noc_ranking_get(r, NULL, 0, NULL, &sum), NOC_OK);
+        assert_true(sum.lux.error > 0 && sum.lux.error <= error * sum.lux.value);
+        noc_ranking_destroy(r);
+    }
+    noc_region_destroy(region);
+    close_view(view);
+    noc_scene_destroy(s);
+}
+
 /* Of a class that is a hundredth of the region, intervals hold the truth as often as they say, and so do totals. */
 static void errors_of_classes_cover(void **state) {
     (void)state;
@@ -344,6 +371,7 @@ int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(classes_have_their_closed_form),
                                         cmocka_unit_test(windows_stand_beside),
                                         cmocka_unit_test(errors_of_classes_cover),
+                                        cmocka_unit_test(errors_bound_the_lux),
                                         cmocka_unit_test(a_texture_is_seen_as_in_the_picture),
                                         cmocka_unit_test(triangles_have_their_texture),
                                         cmocka_unit_test(profiles_and_maps_are_those_of_brute_force),
