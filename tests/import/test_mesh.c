@@ -76,6 +76,37 @@ static void test_reads(void **state) {
     unload(&l);
 }
 
+/* What an MTL says of glass: d and Tr, else its illum with its Tf. Glass that does not say how clear it is is opaque,
+ * and counted. */
+static void test_glass(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        float transmittance;
+        size_t issues;
+    } rows[] = { { "d 0.05\n", .95f, 0 },
+                 { "Tr 0.95\n", .95f, 0 },
+                 { "d 0.05\nillum 4\nTf 0.5 0.5 0.5\n", .95f, 0 },
+                 { "illum 4\nTf 0.9 0.9 0.9\n", .9f, 1 },
+                 { "illum 9\nTf 1 0.5 0\n", .2126f + .3576f, 1 },
+                 { "illum 7\nTf 1 1 1\n", 0, 1 },
+                 { "illum 6\n", 0, 1 },
+                 { "illum 2\nTf 0.9 0.9 0.9\n", 0, 0 } };
+    static const char text[] = "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\no pane\nusemtl a\nf 1 2 3\n";
+    write_file("glass.obj", text, strlen(text));
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char library[80];
+        loaded l;
+        snprintf(library, sizeof(library), "newmtl a\nKd 0.1 0 0\n%s", rows[i].text);
+        write_file("glass.mtl", library, strlen(library));
+        load(&l, "glass.obj", NOC_OBJ_UP_Y);
+        assert_int_equal(l.status, NOC_OK);
+        assert_float_equal(material_of(&l, "pane")->transmittance, rows[i].transmittance, 1e-6);
+        assert_int_equal(geo_issues_count(l.issues), rows[i].issues);
+        unload(&l);
+    }
+}
+
 /* Of each mesh its name, its material's red and its triangles. */
 static void test_names(void **state) {
     static const char library[] = "newmtl a\nKd 0.1 0 0\nnewmtl b\nKd 0.2 0 0\n";
@@ -443,9 +474,9 @@ static void test_broken(void **state) {
 static int set_up(void **state) { return make_mesh_folder(); }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl",  "named.anything", "missing.obj", "material.obj",
-                                         "bad.obj",   "map.obj",        "faces.obj",   "my test.mtl",
-                                         "other.mtl", "ab.mtl",         "names.obj" };
+    static const char *const files[] = { "test.mtl",  "named.anything", "missing.obj", "material.obj", "bad.obj",
+                                         "map.obj",   "faces.obj",      "my test.mtl", "other.mtl",    "ab.mtl",
+                                         "names.obj", "glass.obj",      "glass.mtl" };
     return remove_mesh_folder(files, NOC_COUNT(files));
 }
 
@@ -455,12 +486,19 @@ int main(void) {
         return 0;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reads),           cmocka_unit_test(test_map_coordinates),
-        cmocka_unit_test(test_names),           cmocka_unit_test(test_shared_vertices),
-        cmocka_unit_test(test_missing_library), cmocka_unit_test(test_missing_material),
-        cmocka_unit_test(test_bad_faces),       cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_polygons),        cmocka_unit_test(test_libraries),
-        cmocka_unit_test(test_probe),           cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_reads),
+        cmocka_unit_test(test_map_coordinates),
+        cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_shared_vertices),
+        cmocka_unit_test(test_missing_library),
+        cmocka_unit_test(test_missing_material),
+        cmocka_unit_test(test_bad_faces),
+        cmocka_unit_test(test_vertices),
+        cmocka_unit_test(test_polygons),
+        cmocka_unit_test(test_libraries),
+        cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_broken),
     };
     return cmocka_run_group_tests_name("import/mesh", tests, set_up, tear_down);
 }

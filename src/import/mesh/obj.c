@@ -189,6 +189,9 @@ static void clamp_colour(float rgb[3], float hi, bool *changed) {
     }
 }
 
+/* Illumination models of an MTL that let light through: 4, 6, 7 and 9. */
+static bool is_glass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
+
 static noc_material convert_material(const struct aiMaterial *m, const char *name, geo_issues *issues) {
     noc_material out = noc_class_material(NOC_CLASS_OTHER);
     float ks[3] = { 0 }, ns = 0, opacity = 1;
@@ -214,6 +217,18 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
         for (int i = 0; i < 3; i++)
             out.albedo[i] *= (1 - out.f0) / most;
     bool clear = get_float(m, "$mat.opacity", &opacity) && opacity < 1;
+    if (!clear && is_glass(illum)) {
+        float tf[3] = { 1, 1, 1 };
+        get_colour(m, "$clr.transparent", tf);
+        clamp_colour(tf, 1, &changed);
+        opacity = 1 - (0.2126f * tf[0] + 0.7152f * tf[1] + 0.0722f * tf[2]);
+        clear = opacity > 0; /* a filter of 1 is also what is said of none */
+        opacity = clear ? opacity : 1;
+        geo_issue(issues, GEO_GUESSED,
+                  clear ? "glass by its illum, as clear as its Tf"
+                        : "glass by its illum, taken as opaque without d or Tr",
+                  name);
+    }
     if (changed || !(opacity >= 0 && opacity <= 1))
         geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", name);
     if (clear && noc_material_shines(&out))
