@@ -228,6 +228,7 @@ static void test_sources(void **state) {
         const char *counted; /* as in row */
     } rows[] = {
         { "lamp_type", "LED ersetzt HQL 125W", GEO_SOURCE_LED, 0, "" },
+        { "light:lamp_type", "HPS 250W AERO", GEO_SOURCE_SODIUM, 250, "" },
         { "lamp_type", "HQL 125W ersetzt durch LED 40W", GEO_SOURCE_LED, 40, "" },
         { "lamp_type", "HPS 70W replaced by LED 30W", GEO_SOURCE_LED, 30, "" },
         { "lamp_type", "LED 30W replaces HPS 70W", GEO_SOURCE_LED, 30, "" },

@@ -355,7 +355,7 @@ static void left_where_it_lies(void **state) {
     }
 }
 
-/* The model and the lamps of a report (PLATEAU-SDK-for-Unity 2): the walls have 1.24 lx as if the road were at 40 m. */
+/* The model and the lamps of a report (PLATEAU-SDK-for-Unity 2): lamps stand as if the road were at 40 m. */
 static void lamps_of_a_report(void **state) {
     (void)state;
     const char *shared = getenv("NOC_SHARED");
@@ -377,18 +377,15 @@ static void lamps_of_a_report(void **state) {
 
 /* ---- blocks that begin in the air ---- */
 
-static void blocks_in_the_air(void **state) {
-    (void)state;
-#if !NOC_HAVE_GDAL
-    skip(); /* maps in XML are read by it */
-#endif
+static void block_in_the_air(const char *key, const char *value) {
+    char text[2000];
     noc_scene *s = noc_scene_create(log_);
     noc_import_params p = noc_import_default_params();
     p.windows = NOC_SWITCH_OFF;
     p.infer_lamps = NOC_SWITCH_OFF;
     p.footprints = true;
-    const char *paths[] = { write_file(
-        "map.osm",
+    snprintf(
+        text, sizeof(text),
         "<osm version='0.6'><node id='1' lat='51.5' lon='-0.1'/><node id='2' lat='51.5' lon='-0.0997'/>"
         "<node id='3' lat='51.5002' lon='-0.0997'/><node id='4' lat='51.5002' lon='-0.1'/>"
         "<node id='5' lat='51.5004' lon='-0.1'/><node id='6' lat='51.5004' lon='-0.0997'/>"
@@ -397,7 +394,9 @@ static void blocks_in_the_air(void **state) {
         "<node id='10' lat='51.5005' lon='-0.09965'><tag k='highway' v='street_lamp'/><tag k='height' v='8'/></node>"
         "<way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='4'/><nd ref='1'/><tag k='building' v='yes'/>"
         "<tag k='height' v='20'/></way><way id='2'><nd ref='5'/><nd ref='6'/><nd ref='7'/><nd ref='8'/><nd ref='5'/>"
-        "<tag k='building' v='yes'/><tag k='height' v='30'/><tag k='building:min_level' v='5'/></way></osm>") };
+        "<tag k='building' v='yes'/><tag k='height' v='30'/><tag k='%s' v='%s'/></way></osm>",
+        key, value);
+    const char *paths[] = { write_file("map.osm", text) };
     assert_int_equal(noc_scene_load(s, paths, 1, &p, NULL), NOC_OK);
     assert_int_equal(s->lights.len, 2);
     for (size_t i = 0; i < 2; i++) /* the disc of a lamp 8 m high */
@@ -409,6 +408,18 @@ static void blocks_in_the_air(void **state) {
     heights_of(s, "ground", &lo, &hi);
     assert_true(hi - lo < 0.1);
     noc_scene_destroy(s);
+}
+
+static void blocks_in_the_air(void **state) {
+    (void)state;
+#if !NOC_HAVE_GDAL
+    skip(); /* maps in XML are read by it */
+#endif
+    block_in_the_air("building:min_level", "5");
+    block_in_the_air("min_level", "5");
+    block_in_the_air("min_height", "15");
+    block_in_the_air("min_height", "49 ft");
+    block_in_the_air("building:min_height", "15 m");
 }
 
 int main(void) {
