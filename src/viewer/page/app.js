@@ -17,6 +17,7 @@ export class App extends Emitter {
     #shows = []; // modes that were pressed, and that no state answers yet: { n, pane, value }
     #edited = 0; // number of a pressed setting of the world whose version no state has told yet
     #version = 0; // of the world that pictures must show
+    #changed = 0; // number of the newest setting of the world, pressed or pulled, that no state has told yet
     #lit = 'ris'; // the method before the headlight
     #times = new Map(); // number of an input -> when it was sent, ms
     #asked = 0;
@@ -57,9 +58,16 @@ export class App extends Emitter {
 
     setWorld(name, value, pulled = false) {
         const n = this.#say('world', { name, value: String(value) });
-        if (!n || pulled) return;
+        if (!n) return;
+        this.#changed = n;
+        if (pulled) return;
         this.#edited = n;
         this.#press(n, -1);
+    }
+
+    // Is the world set, and no state has told yet to what? Pictures that come meanwhile may be of either.
+    get changing() {
+        return this.#changed > 0;
     }
 
     // To the method that shows surfaces alone, and back to the one before.
@@ -203,7 +211,7 @@ export class App extends Emitter {
         this.state = null;
         this.#pressed.clear(); // what was lost with a connection is answered by none
         this.#shows = [];
-        this.#edited = this.#version = 0;
+        this.#edited = this.#version = this.#changed = 0;
         this.emit('welcome', message);
         if (message.state) this.#settle(message.state);
         this.emit('ready');
@@ -211,6 +219,7 @@ export class App extends Emitter {
 
     #settle(state) {
         this.state = state;
+        if (state.input >= this.#changed) this.#changed = 0;
         this.#shows = this.#shows.filter(({ n }) => n > state.input);
         if (this.#edited && state.input >= this.#edited) {
             this.#edited = 0;

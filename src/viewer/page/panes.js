@@ -17,7 +17,7 @@ export class Panes {
         this.layout = 'single';
         this.split = 0.5; // of the divider
         this.share = 1; // of the window's resolution
-        this.held = null; // { values, of, frozen }: A beside a divider keeps the scene's settings that it had
+        this.held = null; // { values, of, frozen, next }: A beside a divider keeps the scene's settings that it had
         this.aspect = 0; // that pictures have at least; 0: that of their pane
         app.on('picture', (picture) => this.#take(picture));
         app.on('state', (state) => this.#arrange(state));
@@ -90,7 +90,8 @@ export class Panes {
     // While A is held its picture stays as it is whenever the scene has other settings than now. It goes on where the
     // camera moves or A shows another mode, for what was held is another picture then.
     hold(on) {
-        this.held = on ? { values: this.#settings(), of: null, frozen: false } : null;
+        if (this.held?.next) this.#acknowledge(this.held.next);
+        this.held = on ? { values: this.#settings(), of: null, frozen: false, next: null } : null;
         this.#freeze();
         this.app.emit('held', this.held !== null);
     }
@@ -107,11 +108,22 @@ export class Panes {
         this.panes[0].root.classList.toggle('held', frozen);
         this.#captions();
         this.#agree();
+        if (!held?.next || this.app.changing) return;
+        const { next } = held;
+        held.next = null;
+        this.#take(next);
     }
 
     // What the newest picture of A shows, by whatever lamps.
     #shows() {
         return JSON.stringify([this.camera(0), this.app.stats[0]?.show]);
+    }
+
+    // Does a picture of A, which is held, wait until it is told what the scene was set to?
+    #waits(picture) {
+        const waits = picture.pane === 0 && this.held && !this.held.frozen && this.app.changing;
+        if (waits) this.held.next = picture;
+        return waits;
     }
 
     // Is a picture of A one that is not shown, because A is held?
@@ -256,6 +268,7 @@ export class Panes {
     // Pictures of a connection that broke are no answer to what is set in the next one.
     #lost() {
         for (const pane of this.panes) pane.made = null;
+        if (this.held) this.held.next = null;
         this.#agree();
     }
 
@@ -263,6 +276,7 @@ export class Panes {
         const pane = this.panes[picture.pane];
         const made = { ...this.app.stats[picture.pane], input: picture.input };
         if (!pane) return this.#acknowledge(picture); // of a layout that was left
+        if (this.#waits(picture)) return;
         if (this.#kept(picture)) {
             this.app.shown(picture.input);
             return this.#acknowledge(picture);
