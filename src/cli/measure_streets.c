@@ -68,13 +68,31 @@ typedef struct street_counts {
     size_t measured, without;
 } street_counts;
 
+/* Of all roads that of the street which is measured now, in its steps, each from 0 to 1. */
+typedef struct street_progress {
+    noc_progress whole;
+    double before, part; /* of all */
+    double most;         /* of the street */
+} street_progress;
+
+static bool update(void *user, const char *what, double done) {
+    street_progress *p = user;
+    p->most = fmax(p->most, done);
+    return p->whole.update(p->whole.user, what, p->before + p->part * p->most);
+}
+
 static noc_status put_all(FILE *out, measure_job *job, const named_street *s, size_t count, street_counts *of) {
     noc_status status = NOC_OK;
     fprintf(out, "{\"type\": \"FeatureCollection\", \"nocturne\": \"%s\",%s \"features\": [\n", noc_version(),
             *job->site.info.given_crs ? "" : " \"crs\": null,");
+    street_progress progress = { .whole = job->progress };
+    job->progress = (noc_progress){ update, &progress };
     for (size_t i = 0, end; i < count && !status; i = end) {
         for (end = i + 1; end < count && !strcmp(s[end].street.name, s[i].street.name); end++)
             ;
+        progress.before = (double)i / (double)count;
+        progress.part = (double)(end - i) / (double)count;
+        progress.most = 0;
         char *region = cli_format("street:%s", s[i].street.name);
         measure_told t;
         status = measure_told_region(job, region, NULL, &t);
@@ -86,6 +104,7 @@ static noc_status put_all(FILE *out, measure_job *job, const named_street *s, si
         }
         free(region);
     }
+    job->progress = progress.whole;
     fputs("\n]}\n", out);
     return status;
 }
