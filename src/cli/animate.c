@@ -7,13 +7,11 @@
  * not been. */
 #include "render.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define GROUP "Animation"
 #define MOST_PICTURES 1000000
@@ -270,19 +268,10 @@ static noc_status look_at_picture(animation *a, int picture) {
     return status;
 }
 
-/* No picture may replace a file that an input names. */
-static noc_status check_sources(const animation *a) {
-    int status = cli_check_sources(a->job->scene, a->film);
-    for (int i = 0; i < a->pictures && !status; i++) {
-        char *file = cli_series_file(&a->series, i + 1);
-        status = cli_check_sources(a->job->scene, file);
-        free(file);
-    }
-    return status ? NOC_ERR_ARGUMENT : NOC_OK;
-}
-
 static noc_status look_at_pictures(animation *a) {
-    noc_status status = check_sources(a);
+    int taken = cli_check_sources(a->job->scene, a->film);
+    taken = taken ? taken : cli_series_check(&a->series, a->pictures, a->job->scene);
+    noc_status status = taken ? NOC_ERR_ARGUMENT : NOC_OK;
     a->kept = cli_alloc((size_t)a->pictures * sizeof(*a->kept));
     for (int i = 0; i < a->pictures && !status; i++) {
         if (is_mine(a, i) && !a->args->overwrite)
@@ -336,42 +325,6 @@ static void plan_film(animation *a) {
     a->film = NULL;
 }
 
-/* The folder of a film's pictures. An interruption leaves none that is empty, unless other parts may use it. */
-static noc_status make_folder(animation *a) {
-    if (!cli_is_film(a->job->args->output))
-        return NOC_OK;
-    char *folder = cli_format("%.*s", (int)strlen(a->series.prefix) - 1, a->series.prefix);
-    bool made = !mkdir(folder, 0777);
-    noc_status status = !made && errno != EEXIST ? NOC_ERR_IO : NOC_OK;
-    if (status)
-        cli_error("%s: cannot be made: %s", folder, strerror(errno));
-    if (made && a->args->part.count == 1) {
-        cli_leave_nothing_at(folder);
-        a->folder = folder;
-    } else {
-        free(folder);
-    }
-    return status;
-}
-
-static void leave_no_folder(animation *a) {
-    if (!a->folder)
-        return;
-    cli_leave_nothing_at(NULL);
-    rmdir(a->folder); /* which fails where there are pictures in it */
-    free(a->folder);
-}
-
-/* Pictures of a film alone go when it is there. */
-static void remove_pictures(const animation *a) {
-    for (int i = 0; i < a->pictures; i++) {
-        char *file = cli_series_file(&a->series, i + 1);
-        unlink(file);
-        free(file);
-    }
-    rmdir(a->series.prefix);
-}
-
 /* Of several parts the one that ends last makes it. Two that end at once may both make it, of the same pictures. */
 static noc_status make_film(animation *a) {
     if (!a->film || !a->ffmpeg || (a->filmed && !a->made))
@@ -380,14 +333,14 @@ static noc_status make_film(animation *a) {
     if (shared && (!others_are_there(a) || (!a->args->overwrite && film_is_there(a)))) {
         a->filmed = film_is_there(a);
         if (a->filmed && cli_is_film(a->job->args->output))
-            remove_pictures(a);
+            cli_series_remove(&a->series, a->pictures);
         return NOC_OK;
     }
     char *comment = film_comment(a);
     noc_status status = cli_make_film(a->ffmpeg, &a->series, a->pictures, a->args->fps, a->film, comment);
     free(comment);
     if (!status && cli_is_film(a->job->args->output))
-        remove_pictures(a);
+        cli_series_remove(&a->series, a->pictures);
     a->filmed = !status;
     return status;
 }
@@ -545,7 +498,9 @@ static noc_status make_pictures(animation *a) {
         a->filmed = true;
         return NOC_OK;
     }
-    status = make_folder(a);
+    status = cli_is_film(a->job->args->output)
+                 ? cli_series_make_folder(&a->series, a->args->part.count == 1, &a->folder)
+                 : NOC_OK;
     status = status ? status : cli_start_view(a->job);
     if (!status && a->job->args->display.auto_exposure && !a->job->args->show && is_png(&a->series))
         status = meter(a);
@@ -611,7 +566,7 @@ int cli_animate(render_job *job) {
             cli_print_stats(job);
         ending = cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
-    leave_no_folder(&a);
+    cli_series_leave_folder(a.folder);
     noc_camera_path_destroy(a.path);
     cli_series_free(&a.series);
     free(a.film);

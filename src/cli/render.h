@@ -92,6 +92,15 @@ void cli_series_free(cli_series *series);
 char *cli_series_file(const cli_series *series, int number); /* free() it */
 char *cli_series_film(const cli_series *series);             /* the film of such pictures; free() it */
 bool cli_is_film(const char *output);
+/* Reports the first of the pictures that would replace a file the scene is made of. CLI_OK, or CLI_FAILURE. */
+int cli_series_check(const cli_series *series, int pictures, const noc_scene *scene);
+/* Makes the folder of a film's pictures; NOC_ERR_IO after reporting. alone: no other process uses the folder, so that
+ * an interruption removes it while it is empty. *folder is its path then, for cli_series_leave_folder; else unchanged.
+ */
+noc_status cli_series_make_folder(const cli_series *series, bool alone, char **folder);
+void cli_series_leave_folder(char *folder); /* removes it if it is empty, and frees the path; NULL: does nothing */
+/* Removes the pictures and their folder, once the film is there. */
+void cli_series_remove(const cli_series *series, int pictures);
 
 /* film.c */
 char *cli_find_ffmpeg(void); /* free() it; NULL: it is not in the folders of PATH */

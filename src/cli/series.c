@@ -2,9 +2,12 @@
 #include "render.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define FILM ".mp4"
 #define MOST_DIGITS 9
@@ -68,4 +71,46 @@ char *cli_series_film(const cli_series *series) {
     char *film = cli_format("%.*s%s" FILM, (int)(name - series->prefix), series->prefix, *stem ? stem : "animation");
     free(stem);
     return film;
+}
+
+int cli_series_check(const cli_series *series, int pictures, const noc_scene *scene) {
+    int status = CLI_OK;
+    for (int i = 0; i < pictures && !status; i++) {
+        char *file = cli_series_file(series, i + 1);
+        status = cli_check_sources(scene, file);
+        free(file);
+    }
+    return status;
+}
+
+noc_status cli_series_make_folder(const cli_series *series, bool alone, char **folder) {
+    char *path = cli_format("%.*s", (int)strlen(series->prefix) - 1, series->prefix);
+    bool made = !mkdir(path, 0777);
+    noc_status status = !made && errno != EEXIST ? NOC_ERR_IO : NOC_OK;
+    if (status)
+        cli_error("%s: cannot be made: %s", path, strerror(errno));
+    if (made && alone) {
+        cli_leave_nothing_at(path);
+        *folder = path;
+    } else {
+        free(path);
+    }
+    return status;
+}
+
+void cli_series_leave_folder(char *folder) {
+    if (!folder)
+        return;
+    cli_leave_nothing_at(NULL);
+    rmdir(folder); /* which fails where there are pictures in it */
+    free(folder);
+}
+
+void cli_series_remove(const cli_series *series, int pictures) {
+    for (int i = 0; i < pictures; i++) {
+        char *file = cli_series_file(series, i + 1);
+        unlink(file);
+        free(file);
+    }
+    rmdir(series->prefix);
 }
