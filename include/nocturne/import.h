@@ -13,16 +13,15 @@ extern "C" {
 
 typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
-/* What is made up of a lamp where its file does not tell it: by a default of noc_import_params (lamp_height,
- * lamp_lumens, lamp_kelvin), the direction by chance. */
+/* Properties of a lamp that are assumed where its file does not have them. The first three are set by the defaults
+ * lamp_height, lamp_lumens and lamp_kelvin of noc_import_params, the direction is random. */
 typedef enum noc_lamp_default {
     NOC_LAMP_HEIGHT,
     NOC_LAMP_FLUX,
     NOC_LAMP_COLOUR,
-    /* Chance decides where neither the lamp nor a road or building near it tells the direction, always alike for the
-     * same place. Known of lamps that stand in a scene, and only of those whose light depends on it: an axis that is
-     * tilted, a distribution that is not alike all around to 5 % of its peak, or a head more than 0.5 m off its pole's
-     * axis. */
+    /* The direction is random, and the same for the same place, where the lamp has none and no road or building is near
+     * it. Counted for lamps in a scene whose light depends on it: the axis is tilted, the distribution differs between
+     * its C planes by more than 5 % of its peak, or the head is more than 0.5 m off the pole's axis. */
     NOC_LAMP_DIRECTION,
     NOC_LAMP_DEFAULT_COUNT
 } noc_lamp_default;

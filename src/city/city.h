@@ -93,8 +93,8 @@ double city_floor(const noc_scene *scene);
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred,
                   geo_issues *issues);
 
-/* Does the lamp not tell it itself, so that params' default stands in? false of the direction, which has none: the
- * lamp's tally counts it. */
+/* Returns true if the lamp lacks this property, so that the default of params is used. The direction has no default:
+ * the result is false, and city_lamp_tally.by_chance counts it. */
 bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what);
 
 /* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. *lights

@@ -47,7 +47,7 @@ static city_profile_kind profile_kind(const builder *b) {
     return b->of.placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
 }
 
-/* How far its lights are off the axis that the lamp turns about, m; of a modelled body they stay where they are. */
+/* Distance of the lamp's lights from its vertical axis, m. 0 for a modelled body, whose lights do not turn. */
 static double off_axis(const builder *b) {
     if (b->of.lamp->body_heads)
         return 0;

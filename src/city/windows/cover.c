@@ -176,8 +176,8 @@ void city_cover_destroy(city_cover *c) {
     free(c);
 }
 
-/* Does the line o + x d meet the wall between these distances? d: a unit vector. x: where, m; along: of the sign of the
- * cosine of its normal with d. */
+/* Intersects the ray o + x d, d a unit vector, with the wall. Returns true if the hit distance x is within range, m.
+ * *along is negative where the wall faces the ray's origin. */
 static bool meet(const cover_wall *w, const double o[3], const double d[3], const double range[2], double *x,
                  double *along) {
     double a[3], b[3], n[3], s[3], q[3], r[3];
@@ -196,19 +196,20 @@ static bool meet(const cover_wall *w, const double o[3], const double d[3], cons
     return u >= -1e-6 && v >= -1e-6 && u + v <= 1 + 1e-6;
 }
 
-/* A short ray, and what is asked of a wall that it meets. */
+/* A ray over a range of distances, and which hits count. */
 typedef struct short_ray {
     const double *o, *d;
     double range[2];
-    bool nearest; /* what faces as the window does and is nearer than BEGIN is no answer */
-    size_t looks;
+    bool skip_own; /* hits of walls that face as d does count only beyond BEGIN: nearer is the window's own wall */
+    size_t looks;  /* walls tested so far */
 } short_ray;
 
 static bool meets_one(const city_cover *c, const uint32_t *ids, size_t count, short_ray *r) {
     double x, along;
     for (size_t i = 0; i < count; i++) {
         r->looks++;
-        if (meet(&c->walls.data[ids[i]], r->o, r->d, r->range, &x, &along) && !(r->nearest && along >= 0 && x <= BEGIN))
+        if (meet(&c->walls.data[ids[i]], r->o, r->d, r->range, &x, &along) &&
+            !(r->skip_own && along >= 0 && x <= BEGIN))
             return true;
     }
     return false;
@@ -260,7 +261,7 @@ bool city_cover_hides(const city_cover *c, const city_window *w, size_t *looks) 
         double u = i == 4 ? 0.5 : i & 1 ? 0.98 : 0.02, v = i == 4 ? 0.5 : i & 2 ? 0.98 : 0.02, o[3];
         for (int k = 0; k < 3; k++)
             o[k] = w->corner[k] + u * w->edge_u[k] + v * w->edge_v[k];
-        short_ray r = { o, d, { -WINDOW_PARTY_BEHIND_M, WINDOW_PARTY_M }, .nearest = true };
+        short_ray r = { o, d, { -WINDOW_PARTY_BEHIND_M, WINDOW_PARTY_M }, .skip_own = true };
         bool met = meets_any(c, &r);
         *looks += r.looks;
         if (met)
