@@ -512,7 +512,9 @@ static void test_crowded(void **state) {
     for (int i = 0; i < BEHIND; i++)
         add(&all, (double[]){ -10, 2 + .05 * i }, (double[]){ 70, 2 + .05 * i }, 90, 120, 120);
     city_cover *cover = cover_of(&all);
-    size_t whole = make_as(home(6, 60), &own, &noc_window_default_params(), cover).list.len, last = 0;
+    city_windows unbounded = make_as(home(6, 60), &own, &noc_window_default_params(), cover);
+    size_t whole = unbounded.list.len, last = 0;
+    city_windows_free(&unbounded);
     assert_int_equal(whole, 2 * 25);
     /* 5 rays a window look at 62 triangles, in up to four cells */
     for (size_t looks = 0; looks <= 20 * 62 * whole; looks += 62 * whole) {
