@@ -26,8 +26,8 @@ result() {
 
 skip() { count=$((count + 1)); echo "ok $count - $1 # SKIP $2"; }
 
-# run ARGUMENT...: the program's output in out and err, its status in $status. Signs of life, which depend on how busy the
-# machine is, are left out of err.
+# run ARGUMENT...: the program's output in out and err, its status in $status. Signs of life, which depend on how busy
+# the machine is, are left out of err.
 run() {
     "$program" "$@" >out 2>err </dev/null
     status=$?
