@@ -1,6 +1,5 @@
 /* Regions of objects: their triangles, as they face outwards. */
-#include "scene/region.h"
-#include "scene/scene.h"
+#include "scene/region_panes.h"
 
 #include <math.h>
 
@@ -16,8 +15,8 @@ static void corner(const noc_scene *s, size_t t, int i, const float *m, float ou
         out[k] = m ? m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3] : p[k];
 }
 
-/* Triangle t; what lies on the ground faces up, however it is wound. */
-static bool add_triangle(const noc_scene *s, size_t t, const float *m, noc_region *to) {
+/* Triangle t; what lies on the ground faces up, however it is wound. false: it has no area. */
+static bool triangle_patch(const noc_scene *s, size_t t, const float *m, noc_patch *patch) {
     float a[3], b[3], c[3];
     corner(s, t, 0, m, a);
     corner(s, t, 1, m, b);
@@ -33,7 +32,7 @@ static bool add_triangle(const noc_scene *s, size_t t, const float *m, noc_regio
         n[k] = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
     length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 1e-12))
-        return true;
+        return false;
     bool turned = n[2] < 0 && is_ground(s->materials.data[p.material].cls);
     for (int k = 0; k < 3; k++)
         p.n[k] = (float)(n[k] / length * (turned ? -1 : 1));
@@ -45,52 +44,115 @@ static bool add_triangle(const noc_scene *s, size_t t, const float *m, noc_regio
         p.image_u[k] = at[1][k] - at[0][k];
         p.image_v[k] = at[2][k] - at[0][k];
     }
-    return array_push(&to->patches, p);
+    *patch = p;
+    return true;
 }
 
-/* Of meshes of that name and model, those of these classes. m: NULL, or of the body that shows the model. */
-static bool add_meshes(const noc_scene *s, const char *name, uint32_t model, uint32_t classes, const float *m,
-                       noc_region *to, bool *found) {
-    bool ok = true;
-    for (size_t i = 0; i < s->meshes.len && ok; i++) {
-        const noc_scene_mesh *mesh = &s->meshes.data[i];
-        if (mesh->removed || mesh->model != model || (name && (!mesh->name || strcmp(mesh->name, name) != 0)))
+/* Surfaces that are added. */
+typedef struct adding {
+    const noc_scene *scene;
+    const char *name;    /* of meshes; NULL: any */
+    uint32_t classes;    /* 1u << noc_class each */
+    region_panes *panes; /* of the object; NULL: none */
+    noc_region *to;
+    bool found; /* an object of that name */
+} adding;
+
+static bool of_object(const adding *a, const noc_scene_mesh *mesh, uint32_t model) {
+    return !mesh->removed && mesh->model == model && (!a->name || (mesh->name && strcmp(mesh->name, a->name) == 0));
+}
+
+static noc_status add_mesh(adding *a, const noc_scene_mesh *mesh, const float *m) {
+    noc_status status = NOC_OK;
+    noc_patch p;
+    for (uint32_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count && !status; t++) {
+        if (!triangle_patch(a->scene, t, m, &p))
             continue;
-        *found = true;
-        if (classes >> s->materials.data[mesh->material].cls & 1)
-            for (uint32_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count && ok; t++)
-                ok = add_triangle(s, t, m, to);
+        if (a->panes && a->scene->materials.data[mesh->material].cls != NOC_CLASS_WINDOW)
+            status = region_panes_cut(a->panes, &p, a->to);
+        else
+            status = array_push(&a->to->patches, p) ? NOC_OK : NOC_ERR_MEMORY;
     }
-    return ok;
+    return status;
+}
+
+/* m: NULL, or of the body that shows the model. */
+static noc_status add_meshes(adding *a, uint32_t model, const float *m) {
+    const noc_scene *s = a->scene;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < s->meshes.len && !status; i++) {
+        const noc_scene_mesh *mesh = &s->meshes.data[i];
+        if (!of_object(a, mesh, model))
+            continue;
+        a->found = true;
+        if (a->classes >> s->materials.data[mesh->material].cls & 1)
+            status = add_mesh(a, mesh, m);
+    }
+    return status;
 }
 
 /* Bodies of lamps of that name. */
-static bool add_bodies(const noc_scene *s, const char *id, uint32_t classes, noc_region *to, bool *found) {
-    bool ok = true;
-    for (size_t i = 0; i < s->bodies.len && ok; i++) {
+static noc_status add_bodies(adding *a, const char *id) {
+    const noc_scene *s = a->scene;
+    noc_status status = NOC_OK;
+    adding body_of = { s, NULL, a->classes, NULL, a->to, false };
+    for (size_t i = 0; i < s->bodies.len && !status; i++) {
         const noc_scene_body *body = &s->bodies.data[i];
         const char *name = s->light_names.data[body->light];
         float m[12];
         if (!name || strcmp(name, id) != 0)
             continue;
         noc_body_transform(body, m);
-        ok = add_meshes(s, NULL, body->model, classes, m, to, found);
+        status = add_meshes(&body_of, body->model, m);
     }
+    a->found = a->found || body_of.found;
+    return status;
+}
+
+/* The panes of all its windows. */
+static bool find_panes(const adding *a, region_panes *panes) {
+    const noc_scene *s = a->scene;
+    noc_patch p;
+    bool ok = true;
+    for (size_t i = 0; i < s->meshes.len && ok; i++) {
+        const noc_scene_mesh *mesh = &s->meshes.data[i];
+        if (s->materials.data[mesh->material].cls != NOC_CLASS_WINDOW || !of_object(a, mesh, 0))
+            continue;
+        for (uint32_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count && ok; t++)
+            ok = !triangle_patch(s, t, NULL, &p) || region_panes_add(panes, &p);
+    }
+    region_panes_sort(panes);
     return ok;
+}
+
+static noc_status add_object(noc_region *region, const noc_scene *s, const char *id, uint32_t classes, bool *found) {
+    region_panes panes = { .counted = classes >> NOC_CLASS_WINDOW & 1 };
+    adding a = { s, id, classes, &panes, region, false };
+    noc_status status = find_panes(&a, &panes) ? add_meshes(&a, 0, NULL) : NOC_ERR_MEMORY;
+    status = status ? status : add_bodies(&a, id);
+    region_panes_free(&panes);
+    *found = a.found;
+    return status;
 }
 
 noc_status noc_region_add_object(noc_region *region, const noc_scene *s, const char *id, uint32_t classes) {
     if (!region || !s || !id)
         return noc_null(region ? region->log : NULL, __func__);
-    bool found = false, ok;
+    bool found = false;
     size_t had = region->patches.len;
     classes = classes ? classes : ~(1u << NOC_CLASS_CLOSURE | 1u << NOC_CLASS_GROUND);
     noc_scene_lock_read(s);
-    ok = add_meshes(s, id, 0, classes, NULL, region, &found) && add_bodies(s, id, classes, region, &found);
+    noc_status status = add_object(region, s, id, classes, &found);
     noc_scene_unlock_read(s);
-    if (!ok) {
+    if (status) {
         region->patches.len = had;
-        return noc_no_memory(region->log, "region");
+        return status == NOC_ERR_MEMORY
+                   ? noc_no_memory(region->log, "region")
+                   : noc_error(
+                         region->log, NOC_ERR_ARGUMENT,
+                         "region: object \"%.100s\": the windows before its walls cut them into more than %d pieces, "
+                         "or overlap too often",
+                         id, REGION_PIECES);
     }
     if (!found)
         return NOC_ERR_ARGUMENT;
