@@ -1,52 +1,72 @@
-/* The order of axes of a city in degrees: both orders are places on Earth, and other inputs tell which one it is. */
+/* The order of axes, by the first coordinates in a CRS. Geographic CRSs come in the order of their authority (latitude
+ * first for EPSG:6697), however they are spelled. Projected ones come easting first: several of them are northing first
+ * by the authority's book (EPSG:31466 to 31469, 31256), but files do not follow it. Where the first coordinates fit the
+ * CRS's area of use only the other way round, or lie where the other inputs do only so (meeting.c), the other way it
+ * is, and the report says so. */
 #include "import/load/load.h"
 
 #include <math.h>
 
-#define APART 100.0 /* km: farther apart inputs are not of one city */
-#define TOGETHER 20.0
+#define AXIS_TRIES 16 /* polygons that are looked at before the order of axes is left as it is */
 
-/* By the great circle, on a sphere of the Earth's size. */
-static double distance_km(const double a[2], const double b[2]) {
-    const double degree = M_PI / 180;
-    double dlat = (b[1] - a[1]) * degree / 2, dlon = (b[0] - a[0]) * degree / 2;
-    double h = sin(dlat) * sin(dlat) + cos(a[1] * degree) * cos(b[1] * degree) * sin(dlon) * sin(dlon);
-    return 2 * 6371 * asin(sqrt(fmin(h, 1)));
+/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach
+ * over their edges a little. */
+static bool is_zone_number(source_crs *s, double zone, double x, double y) {
+    double p[2];
+    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 &&
+           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat_near(s->crs, x - 1e6 * zone, y, p) &&
+           fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
 }
 
-/* The middle of an input in degrees whose format has one order of axes, which tables have not. */
-static bool middle_of(const importer *im, const input *in, double lonlat[2]) {
-    noc_import_params params = *im->params;
-    params.progress = (noc_progress){ 0 };
-    params.strict = false;
-    noc_report *report = NULL;
-    noc_status status = noc_inspect(NULL, in->path, &params, &report);
-    const noc_report_file *file = !status && noc_report_file_count(report) ? noc_report_get_file(report, 0) : NULL;
-    bool known = file && file->has_extent && file->degrees && strcmp(file->format, "CSV");
-    for (int k = 0; known && k < 2; k++)
-        lonlat[k] = (file->extent_min[k] + file->extent_max[k]) / 2;
-    noc_report_destroy(report);
-    return known;
-}
-
-static bool find_elsewhere(importer *im, double lonlat[2]) {
-    pthread_mutex_lock(&im->lock);
-    for (size_t i = 0; i < im->input_count && !im->elsewhere.asked; i++) {
-        const input *in = &im->inputs[i];
-        if (in->reader && in->reader->reads == NOC_READS_LAMPS && !in->left_out)
-            im->elsewhere.known = im->elsewhere.known || middle_of(im, in, im->elsewhere.lonlat);
+/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings
+ * the point into the CRS's area of use. */
+static noc_status decide(reading *r, source_crs *s, double x, double y, const char *id) {
+    geo_issues *issues = r->in->issues;
+    double zone = floor(x / 1e6);
+    double given = geo_crs_outside(s->crs, x, y);
+    if (given == 0) {
+        s->axes_decided = true;
+        noc_status status = meeting_exchanges(r, s->crs, x, y, &s->swap);
+        if (status || !s->swap)
+            return status;
+        noc_warn(r->log, "%s: lies where the other inputs do only with latitude and longitude exchanged: done",
+                 r->in->path);
+        geo_issue(issues, GEO_GUESSED, "axes exchanged to meet the other inputs", id);
+    } else if (geo_crs_outside(s->crs, y, x) == 0) {
+        s->axes_decided = s->swap = true;
+        noc_warn(r->log, "%s: the coordinates fit %s only with their axes exchanged: done", r->in->path,
+                 geo_crs_name(s->crs));
+        geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
+    } else if (is_zone_number(s, zone, x, y)) {
+        s->axes_decided = true;
+        s->shift_x = -1e6 * zone;
+        geo_issue(issues, GEO_REPAIRED, "zone number taken off the easting", id);
+    } else {
+        s->outside = given;
+        s->opposite = geo_crs_outside(s->crs, -x, -y) == 0 || geo_crs_outside(s->crs, -y, -x) == 0;
+        s->axes_decided = ++s->tries == AXIS_TRIES;
     }
-    im->elsewhere.asked = true;
-    bool known = im->elsewhere.known;
-    memcpy(lonlat, im->elsewhere.lonlat, sizeof(im->elsewhere.lonlat));
-    pthread_mutex_unlock(&im->lock);
-    return known;
+    return NOC_OK;
 }
 
-bool axes_exchanged(importer *im, const input *in, geo_crs *crs, double x, double y) {
-    double other[2], given[2], exchanged[2];
-    return in->reader && in->reader->reads == NOC_READS_CITY && geo_crs_is_geographic(crs) && im->input_count > 1 &&
-           fabs(x - y) > 1 && geo_crs_outside(crs, y, x) == 0 && find_elsewhere(im, other) &&
-           geo_crs_lonlat_near(crs, x, y, given) && geo_crs_lonlat_near(crs, y, x, exchanged) &&
-           distance_km(given, other) > APART && distance_km(exchanged, other) < TOGETHER;
+noc_status axes_fix(reading *r, source_crs *s, double *xyz, size_t count, const char *id) {
+    noc_status status = NOC_OK;
+    for (size_t i = 0; s->crs && i < count && !s->axes_decided; i++)
+        if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
+            status = decide(r, s, xyz[3 * i], xyz[3 * i + 1], id);
+            break;
+        }
+    if (!s->crs || (!s->swap && s->shift_x == 0))
+        return status;
+    for (size_t i = 0; i < count; i++) {
+        double *p = xyz + 3 * i, x = p[0];
+        if (s->swap) {
+            p[0] = p[1];
+            p[1] = x;
+        }
+        p[0] += s->shift_x;
+    }
+    return status;
 }
+
+bool axes_doubtful(const source_crs *s) { return s->tries && (!s->axes_decided || s->tries == AXIS_TRIES); }

@@ -45,6 +45,7 @@ typedef struct input {
     bool left_out;      /* found in a folder, and of no kind that is read */
     const char *crs;    /* that the user gives it in place of what it names; NULL: none */
     bool crs_degrees;   /* which is geographic */
+    bool one_order;     /* of axes: its format names latitude and longitude (meeting.c) */
     double unit;        /* of heights [m], that the user gives; 0: none */
     bool is_file;       /* with the next three, which tell whether two are the same */
     uint64_t device, inode, size;
@@ -183,10 +184,7 @@ typedef struct importer {
     double origin[3];
     const char *placed_by; /* path of the input that settled it */
     bool far_said;         /* that an input lies far from the others */
-    struct {
-        bool asked, known;
-        double lonlat[2];
-    } elsewhere; /* the middle of a map in degrees, for cities whose order of axes is not known (axes.c) */
+    meeting_place meeting; /* under the lock */
     /* what was taken (take.c) */
     object_records records;
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */

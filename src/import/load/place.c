@@ -1,15 +1,9 @@
-/* Where the scene is: which CRS the coordinates of a file are in, which one the scene gets, and the way between.
- *
- * Axis order. Geographic CRSs come in the order of their authority (latitude first for EPSG:6697), however they are
- * spelled. Projected ones come easting first: several of them are northing first by the authority's book (EPSG:31466 to
- * 31469, 31256), but files do not follow it. Where the first coordinates fit the CRS's area of use only the other way
- * round, the other way it is, and the report says so. */
+/* Where the scene is: which CRS the coordinates of a file are in, which one the scene gets, and the way between. */
 #include "import/load/load.h"
 
 #include <ctype.h>
 #include <math.h>
 
-#define AXIS_TRIES 16     /* polygons that are looked at before the order of axes is left as it is */
 #define FAR_OUTSIDE 3.0   /* degrees outside the CRS's area of use that are worth a warning */
 #define STRAY_METRES 20e3 /* a first object this far from the middle of the first ones does not settle the place */
 #define STRAY_DEGREES 0.2
@@ -94,66 +88,6 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
     if (lat_first)
         *lat_first = source->crs && geo_crs_is_geographic(source->crs) && geo_crs_lat_first(source->crs);
     return NOC_OK;
-}
-
-/* ---- axes ---- */
-
-/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach
- * over their edges a little. */
-static bool is_zone_number(source_crs *s, double zone, double x, double y) {
-    double p[2];
-    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 &&
-           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat_near(s->crs, x - 1e6 * zone, y, p) &&
-           fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
-}
-
-/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings
- * the point into the CRS's area of use. */
-static void decide_axes(reading *r, source_crs *s, double x, double y, const char *id) {
-    geo_issues *issues = r->in->issues;
-    double zone = floor(x / 1e6);
-    double given = geo_crs_outside(s->crs, x, y);
-    if (given == 0) {
-        s->axes_decided = true;
-        if (!(s->swap = axes_exchanged(r->im, r->in, s->crs, x, y)))
-            return;
-        noc_warn(r->log, "%s: lies where the other inputs do only with latitude and longitude exchanged: done",
-                 r->in->path);
-        geo_issue(issues, GEO_GUESSED, "axes exchanged to meet the other inputs", id);
-    } else if (geo_crs_outside(s->crs, y, x) == 0) {
-        s->axes_decided = s->swap = true;
-        noc_warn(r->log, "%s: the coordinates fit %s only with their axes exchanged: done", r->in->path,
-                 geo_crs_name(s->crs));
-        geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
-    } else if (is_zone_number(s, zone, x, y)) {
-        s->axes_decided = true;
-        s->shift_x = -1e6 * zone;
-        geo_issue(issues, GEO_REPAIRED, "zone number taken off the easting", id);
-    } else {
-        s->outside = given;
-        s->opposite = geo_crs_outside(s->crs, -x, -y) == 0 || geo_crs_outside(s->crs, -y, -x) == 0;
-        s->axes_decided = ++s->tries == AXIS_TRIES;
-    }
-}
-
-static void fix_axes(reading *r, source_crs *s, double *xyz, size_t count, const char *id) {
-    if (!s->crs)
-        return;
-    for (size_t i = 0; i < count && !s->axes_decided; i++)
-        if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
-            decide_axes(r, s, xyz[3 * i], xyz[3 * i + 1], id);
-            break;
-        }
-    if (!s->swap && s->shift_x == 0)
-        return;
-    for (size_t i = 0; i < count; i++) {
-        double *p = xyz + 3 * i, x = p[0];
-        if (s->swap) {
-            p[0] = p[1];
-            p[1] = x;
-        }
-        p[0] += s->shift_x;
-    }
 }
 
 /* ---- the scene's place ---- */
@@ -424,11 +358,12 @@ noc_status place_settle(reading *r, const place_sample *samples, size_t count) {
     double *const axis[2] = { both, both + count };
     double first[3] = { 0 }, point[3] = { 0 };
     size_t n = 0, in_area = 0;
+    noc_status status = NOC_OK;
     for (int pass = 0; pass < 3; pass++) /* decides about the axes; counts; takes */
-        for (size_t i = 0; i < count; i++) {
+        for (size_t i = 0; i < count && !status; i++) {
             double p[3];
             memcpy(p, samples[i].xyz, sizeof(p));
-            fix_axes(r, samples[i].source, p, 1, samples[i].id);
+            status = axes_fix(r, samples[i].source, p, 1, samples[i].id);
             if (pass == 0 || samples[i].source != s)
                 continue;
             bool inside = s->crs && geo_crs_outside(s->crs, p[0], p[1]) <= FAR_OUTSIDE;
@@ -440,11 +375,13 @@ noc_status place_settle(reading *r, const place_sample *samples, size_t count) {
             axis[0][n] = p[0];
             axis[1][n++] = p[1];
         }
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2 && n; k++) {
         qsort(axis[k], n, sizeof(double), compare_doubles);
         point[k] = axis[k][(n - 1) / 2];
     }
     free(both);
+    if (status)
+        return status;
     double stray = s->crs && geo_crs_is_geographic(s->crs) ? STRAY_DEGREES : STRAY_METRES;
     bool by_first = fabs(first[0] - point[0]) <= stray && fabs(first[1] - point[1]) <= stray;
     return prepare(r, s, by_first ? first : point);
@@ -460,8 +397,10 @@ noc_status place_points(reading *r, double *xyz, size_t count, const char *id, b
     }
     source_crs *s = r->source;
     double lo[3], hi[3], centre[3];
-    fix_axes(r, s, xyz, count, id);
+    noc_status fixed = axes_fix(r, s, xyz, count, id);
     r->given.len = 0;
+    if (fixed)
+        return fixed;
     if (!bounds_of(xyz, count, lo, hi)) {
         geo_issue(in->issues, GEO_SKIPPED, "coordinates that are not finite", id);
         return NOC_OK;
@@ -580,8 +519,7 @@ void place_finish_file(reading *r, bool read) {
     r->source = NULL;
     for (size_t i = 0; i < r->in->sources.len; i++) {
         const source_crs *s = r->in->sources.data[i];
-        bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
-        if (read && doubtful && s->outside > FAR_OUTSIDE)
+        if (read && axes_doubtful(s) && s->outside > FAR_OUTSIDE)
             noc_warn(r->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?%s",
                      r->in->path, geo_crs_name(s->crs),
                      s->opposite

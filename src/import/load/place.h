@@ -69,13 +69,31 @@ const char *given_crs_of(const importer *im, const input *in);
 /* Sets *crs to the input's own in place of `spelling`, and warns if that is another one. */
 noc_status given_crs_override(reading *r, const char *spelling, bool taken, const char *place, geo_crs **crs);
 void given_crs_warn(importer *im); /* of inputs that name another than --crs, once all are read */
-/* axes.c: does a city, of which that is a point in the order that its CRS has, lie where the maps among the inputs do
- * only with latitude and longitude exchanged? The first call that must know reads these maps. */
-bool axes_exchanged(importer *im, const input *in, geo_crs *crs, double x, double y);
+
+/* ---- axes.c ---- */
+
+/* Puts coordinates as emitted into easting northing order, in place. Decides about the order by the first of the CRS.
+ */
+noc_status axes_fix(reading *r, source_crs *s, double *xyz, size_t count, const char *id);
+bool axes_doubtful(const source_crs *s); /* no coordinate lay in the CRS's area of use */
+
+/* ---- meeting.c ---- */
+
+/* Where the inputs meet, longitude and latitude. */
+typedef struct meeting_place {
+    bool asked, known;
+    double lonlat[2];
+} meeting_place;
+/* Sets *exchange if the input, of which that is a point in the order that its CRS or its format has, lies where the
+ * others do only with latitude and longitude exchanged, and that reading is the plausible one. The first call that must
+ * know looks into all inputs. */
+noc_status meeting_exchanges(reading *r, geo_crs *crs, double x, double y, bool *exchange);
+
+/* ---- the rest of place.c ---- */
+
 /* The point with its axes exchanged, in the scene; false where it then has no place. */
 bool place_exchanged(importer *im, const given_place *given, double xy[2]);
 void place_finish_file(reading *r, bool read);
 void place_forget(input *in); /* its CRSs: lamps are asked for them until the end */
-
 
 #endif
