@@ -18,6 +18,7 @@
  *       light: on                   # --environment-light
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
+ *       road: W3                    # noc_road_classes
  *     materials-by-name:            # as the inputs name them: noc_scene_find_material
  *       steel_dark: { metalness: 1, roughness: 0.3 }
  *     luminaires:                   # rules for lamps: nocturne/luminaire.h

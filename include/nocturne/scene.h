@@ -62,9 +62,21 @@ typedef struct noc_material {
 } noc_material;
 
 NOC_API noc_material noc_class_material(noc_class cls);
+/* A class of road surfaces as drivers see them, from 1 degree above the road, and the material that is fitted to it. R1
+ * to R4 are dry (CIE 144:2001; R1 is concrete, R3 what roads are by default), W1 to W4 wet (CIE 47:1979). */
+typedef struct noc_road_class {
+    const char *name; /* "R1", ... */
+    float albedo, f0, roughness;
+    double q0; /* average luminance coefficient of the class's standard, cd/m2 a lux */
+    double s1; /* its specular factor, r(0, 2) / r(0, 0) */
+} noc_road_class;
+/* All of them; after the last comes one whose name is NULL. */
+NOC_API const noc_road_class *noc_road_classes(void);
+
 /* The same surface after rain: under a film of water it is darker (Angstrom 1925: the water's side of the surface
- * reflects a / (n^2 (1 - a) + a) of what comes, n = 1.333) and reflects as water does, f0 = 0.02. For roads, pavements
- * and ground; at run time by noc_scene_set_class_material. NULL is noc_class_material(NOC_CLASS_OTHER), wet. */
+ * reflects a / (n^2 (1 - a) + a) of what comes, n = 1.333) and reflects as water does, f0 = 0.02. One of the road
+ * classes W1 to W4 is wet and stays as it is. For roads, pavements and ground; at run time by
+ * noc_scene_set_class_material. NULL is noc_class_material(NOC_CLASS_OTHER), wet. */
 NOC_API noc_material noc_material_wet(const noc_material *dry);
 
 /* The same surface as a metal to that share, 0..1: f0 goes from 0.04, that of glass, paint and stone, to the luminance

@@ -223,8 +223,9 @@ static void print_materials(FILE *out, const found *all) {
         if ((!all->polygons[c] && c != NOC_CLASS_TERRAIN) || c == NOC_CLASS_CLOSURE)
             continue;
         noc_material m = noc_class_material((noc_class)c);
-        fprintf(out, "#  %s: { albedo: [%g, %g, %g], f0: %g, roughness: %g }\n", noc_class_name((noc_class)c),
-                (double)m.albedo[0], (double)m.albedo[1], (double)m.albedo[2], (double)m.f0, (double)m.roughness);
+        fprintf(out, "#  %s: { albedo: [%g, %g, %g], f0: %g, roughness: %g }%s\n", noc_class_name((noc_class)c),
+                (double)m.albedo[0], (double)m.albedo[1], (double)m.albedo[2], (double)m.f0, (double)m.roughness,
+                c == NOC_CLASS_ROAD ? " # that is R3, CIE's asphalt; or a word: R1 to R4 dry, W1 to W4 wet" : "");
     }
 }
 

@@ -264,6 +264,28 @@ static const noc_named_material untold_material = {
     .albedo = { UNTOLD, UNTOLD, UNTOLD }, .f0 = UNTOLD, .roughness = UNTOLD, .metalness = UNTOLD
 };
 
+/* A surface: its keys, or the name of a road class. */
+static noc_status take_surface(taken *t, yaml_node_t *value, noc_named_material *told) {
+    *told = untold_material;
+    t->material = told;
+    if (value->type != YAML_SCALAR_NODE)
+        return recipe_each(t->file, value, "a material", take_material_key, t);
+    char names[80] = "", said[64];
+    size_t n = 0;
+    const char *text = recipe_text(value) ? recipe_text(value) : "";
+    for (const noc_road_class *c = noc_road_classes(); c->name; c++) {
+        if (noc_ieq(c->name, text)) {
+            told->albedo[0] = told->albedo[1] = told->albedo[2] = c->albedo;
+            told->f0 = c->f0;
+            told->roughness = c->roughness;
+            return NOC_OK;
+        }
+        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", n ? ", " : "", c->name);
+    }
+    return recipe_wrong(t->file, value, "a material is a mapping or a class of road surfaces (%s), not \"%s\"", names,
+                        noc_text_clean(said, sizeof(said), text));
+}
+
 static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
     taken *t = ctx;
     noc_recipe *r = t->file->recipe;
@@ -276,9 +298,8 @@ static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *
     if (cls < 0)
         return recipe_unknown(t->file, key, "materials, whose keys are classes", words, NOC_CLASS_COUNT);
     noc_material material = noc_class_material((noc_class)cls);
-    noc_named_material told = untold_material;
-    t->material = &told;
-    noc_status status = recipe_each(t->file, value, "a material", take_material_key, t);
+    noc_named_material told;
+    noc_status status = take_surface(t, value, &told);
     if (told.albedo[0] != UNTOLD)
         memcpy(material.albedo, told.albedo, sizeof(material.albedo));
     material.f0 = told.f0 != UNTOLD ? told.f0 : material.f0;
@@ -291,9 +312,8 @@ static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *
 static noc_status take_named_material(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
     taken *t = ctx;
     noc_recipe *r = t->file->recipe;
-    noc_named_material told = untold_material;
-    t->material = &told;
-    noc_status status = recipe_each(t->file, value, "a material", take_material_key, t);
+    noc_named_material told;
+    noc_status status = take_surface(t, value, &told);
     if (status)
         return status;
     told.name = arena_strdup(&r->arena, recipe_text(key));

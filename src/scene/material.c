@@ -1,8 +1,12 @@
 /* Materials, and what each class of surface is made of. */
 #include "scene/scene.h"
 
-/* Reflectances: typical values for dry surfaces (IESNA Lighting Handbook, building materials). The road is fitted to
- * class R3 of CIE 144:2001 (Q0 .07, S1 1.11) at a driver's angle; tests/core/test_road_classes.c computes both. */
+/* A dry road of class R3, which roads are by default. */
+#define ROAD_ALBEDO .073f
+#define ROAD_F0 .04f
+#define ROAD_ROUGHNESS .8f
+
+/* Reflectances: typical values for dry surfaces (IESNA Lighting Handbook, building materials). */
 #define CLASSES                                                                                                        \
     CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1)                                                            \
     CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1)                                                              \
@@ -13,7 +17,7 @@
     CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f)                                                         \
     CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1)                                              \
     CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1)                                                        \
-    CLASS(NOC_CLASS_ROAD, "road", .073f, .073f, .073f, .04f, .8f)                                                      \
+    CLASS(NOC_CLASS_ROAD, "road", ROAD_ALBEDO, ROAD_ALBEDO, ROAD_ALBEDO, ROAD_F0, ROAD_ROUGHNESS)                      \
     CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f)                                                 \
     CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1)                                                            \
     CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1)                                                              \
@@ -42,12 +46,39 @@ noc_material noc_class_material(noc_class cls) {
     return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
 }
 
+/* Fitted by Q0 and S1 as tests/core/test_road_classes.c computes them from the material: dry roads with the f0 of
+ * stone, wet ones with that of water. docs/defaults.md says where the standards' values are from. */
+static const noc_road_class road_classes[] = {
+    { "R1", .211f, .04f, .95f, .10, .25 },
+    { "R2", .090f, .04f, .883f, .07, .58 },
+    { "R3", ROAD_ALBEDO, ROAD_F0, ROAD_ROUGHNESS, .07, 1.11 },
+    { "R4", .066f, .04f, .748f, .08, 1.55 },
+    { "W1", .091f, .02f, .614f, .114, 3.2 },
+    { "W2", .088f, .02f, .53f, .150, 5.7 },
+    { "W3", .082f, .02f, .461f, .196, 8.6 },
+    { "W4", .075f, .02f, .407f, .247, 12.6 },
+    { NULL, 0, 0, 0, 0, 0 },
+};
+
+const noc_road_class *noc_road_classes(void) { return road_classes; }
+
+/* Is it the surface of one of the wet classes? */
+static bool is_wet_road(const noc_material *m) {
+    for (const noc_road_class *c = road_classes; c->name; c++)
+        if (*c->name == 'W' && m->albedo[0] == c->albedo && m->albedo[1] == c->albedo && m->albedo[2] == c->albedo &&
+            m->f0 == c->f0 && m->roughness == c->roughness)
+            return true;
+    return false;
+}
+
 /* A. Angstrom, "The albedo of various surfaces of ground", Geografiska Annaler 7 (1925) 323-342. The roughness makes
  * the road as light to a driver as class W2 of wet surfaces (Q0 .150; W. van Bommel, Road Lighting, Springer 2015): a
  * film that follows the grains, without puddles. */
 noc_material noc_material_wet(const noc_material *dry) {
     const float n2 = 1.333f * 1.333f, film = 0.52f;
     noc_material m = dry ? *dry : noc_class_material(NOC_CLASS_OTHER);
+    if (is_wet_road(&m))
+        return m;
     for (int i = 0; i < 3; i++)
         m.albedo[i] = m.albedo[i] / (n2 * (1 - m.albedo[i]) + m.albedo[i]);
     m.f0 = 0.02f;

@@ -267,6 +267,34 @@ static void assert_wrong(const char *text, noc_status expected, int line, const 
 
 #define HEAD "nocturne: 1\ninputs: [a]\n"
 
+/* One word is a road class, wherever a surface is given; what is written of it says the same again. */
+static void test_road_classes_are_words(void **state) {
+    noc_recipe *r = NULL;
+    const noc_road_class *w3 = noc_road_classes() + 6, *r1 = noc_road_classes();
+    assert_string_equal(w3->name, "W3");
+    assert_int_equal(load(HEAD "materials: {road: W3, sidewalk: r1}\nmaterials-by-name: {slab: R1}\n", &r), NOC_OK);
+    char *text = NULL;
+    for (int time = 0; time < 2; time++) {
+        const noc_recipe_info *info = noc_recipe_get_info(r);
+        assert_true(info->material_count == 2 && info->named_material_count == 1);
+        for (int i = 0; i < 3; i++) {
+            const noc_road_class *want = i ? r1 : w3;
+            const noc_named_material *named = &info->named_materials[0];
+            const noc_material *m = &info->materials[i == 1];
+            for (int k = 0; k < 3; k++)
+                assert_true((i == 2 ? named->albedo : m->albedo)[k] == want->albedo);
+            assert_true((i == 2 ? named->f0 : m->f0) == want->f0);
+            assert_true((i == 2 ? named->roughness : m->roughness) == want->roughness);
+        }
+        if (!time)
+            assert_int_equal(noc_recipe_write(info, NULL, 0, NULL, &text), NOC_OK);
+        noc_recipe_destroy(r);
+        if (!time)
+            assert_int_equal(load(text, &r), NOC_OK);
+    }
+    free(text);
+}
+
 static const struct {
     const char *text;
     int line;
@@ -311,6 +339,8 @@ static const struct {
     { HEAD "materials: {wall: {albedo: [1, 0, x]}}\n", 3, "entry 3 is no number" },
     { HEAD "materials: {wall: {albedo: 1.5}}\n", 3, "albedo, f0 and metalness are 0 to 1" },
     { HEAD "materials: {wall: {roughness: 0}}\n", 3, "roughness .05 to 1" },
+    { HEAD "materials: {road: R5}\n", 3, "(R1, R2, R3, R4, W1, W2, W3, W4), not \"R5\"" },
+    { HEAD "materials-by-name: {asphalt: }\n", 3, "a class of road surfaces" },
     { HEAD "luminaires: {kelvin: 3}\n", 3, "luminaires is a list of rules" },
     { HEAD "luminaires:\n- {kelvin: 3000}\n- {kelwin: 3}\n", 5, "no key kelwin in a luminaire; is it kelvin?" },
     { HEAD "luminaires:\n- {kelvin: 3}\n", 4, "outside 1000 to 25000" },
@@ -557,6 +587,7 @@ int main(void) {
         cmocka_unit_test(test_whose_lumens),
         cmocka_unit_test(test_every_option_is_a_key),
         cmocka_unit_test(test_sections),
+        cmocka_unit_test(test_road_classes_are_words),
         cmocka_unit_test(test_what_is_wrong_is_told_with_its_line),
         cmocka_unit_test(test_files_that_cannot_be_read),
         cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
