@@ -84,8 +84,8 @@ MUTANTS = [
            ["import-test_luminaire_files", "import-test_luminaires"]),
     # import
     Mutant("axis-order", "the order of axes that other inputs tell is ignored", "src/import/load/axes.c",
-           "distance_km(given, other) > APART &&", "distance_km(given, other) < APART &&",
-           ["cli-inputs"]),
+           "meeting_exchanges(r, s->crs, x, y, &s->swap);", "meeting_exchanges(r, s->crs, x, y, &(bool){ false });",
+           ["import-test_axes", "cli-inputs"]),
     Mutant("feet", "lamps of a land of feet are judged as everywhere", "src/import/load/units.c",
            "return &hangings[units_of_feet(in->lamp_given.source, in->lamp_given.xy)];", "return &hangings[0];",
            ["import-test_lamp_heights", "import-test_heights"]),
