@@ -73,7 +73,8 @@ NOC_DEFAULT_PARAMS(noc_traffic_params, noc_traffic_default_params, NOC_TRAFFIC_D
 #endif
 
 typedef struct noc_import_params {
-    /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
+    /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one. It replaces what
+     * cities name, with a warning, where their coordinates fit it and no input is there that may name none */
     const char *crs;
     /* "FILE=CRS": CRS of inputs in place of the one that they name. FILE is an input, the end of its path, or a pattern
      * of either; an error if no input is called so. Of several for one input the last counts */
@@ -240,7 +241,7 @@ typedef struct noc_report_file {
     const char *crs;            /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
     const char *crs_given;      /* as spelled in the file, "" if none */
     bool crs_taken;             /* the file names none: it is its format's, or what its numbers tell */
-    bool crs_overridden;        /* crs is noc_import_params.file_crs's, whatever the file names */
+    bool crs_overridden;        /* crs is noc_import_params.file_crs's or crs's, whatever the file names */
     double height_unit;         /* of its heights [m]; 0: no coordinates were read, or a mesh's */
     const char *height_unit_by; /* what the unit follows from: "by its CRS", ...; "" where height_unit is 0 */
     uint64_t bytes;             /* as stored */

@@ -84,7 +84,7 @@ static void print_source(const noc_report_file *file, bool timing) {
         printf(" (%.0f MB/s)", 1e-6 * (double)file->bytes_read / file->seconds);
     bool known = file->crs && *file->crs;
     printf("\n  %-11s %s", "CRS", known ? noc_text_clean(text, sizeof(text), file->crs) : "none");
-    const char *how = file->crs_overridden ? "by --file-crs, in place of" : "given as";
+    const char *how = file->crs_overridden ? "by option, in place of" : "given as";
     if (file->crs_given && *file->crs_given)
         printf(", %s \"%s\"", how, noc_text_clean(text, sizeof(text), file->crs_given));
     else if (file->crs_overridden)

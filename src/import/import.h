@@ -153,6 +153,8 @@ typedef struct noc_reader {
     /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote/remote.c reads it. NULL: never.
      */
     bool (*foreign)(const char *head, size_t size);
+    /* Returns true if files of that kind may name no CRS and have none by their format. NULL: they never do, or all. */
+    bool (*without_crs)(const char *head, size_t size);
     /* Loads the library that this reader calls, where that is not there from the start; why not, or NULL. Readers call
      * it themselves: it is for who must have it before. NULL: nothing to load. */
     const char *(*load)(void);

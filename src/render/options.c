@@ -129,7 +129,7 @@ static const noc_option display_options[] = {
 #define P noc_import_params
 /* clang-format off */
 static const noc_option import_options[] = {
-    TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none (EPSG:n, WKT, PROJ)"),
+    TEXT(P, crs, "crs", "City", "CRS", "CRS of cities and of inputs that name none (EPSG:n, WKT)"),
     TEXTS(P, file_crs, "file-crs", "City", "FILE=CRS", "in place of the CRS an input names; repeatable"),
     TEXTS(P, height_unit, "height-unit", "City", "UNIT", "of heights: m, ft, us-ft, ..., FILE=UNIT"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),

@@ -463,7 +463,7 @@ static void test_file_crs_more(void **state) {
     }
 }
 
-/* --crs moves nothing that names another CRS, and says so. Formats that have one are expected beside what it is for. */
+/* --crs moves no map that names another CRS, and says so. Formats that have one are expected beside what it is for. */
 static void test_crs_not_used(void **state) {
     (void)state;
     struct run r;
@@ -473,22 +473,87 @@ static void test_crs_not_used(void **state) {
     LOAD(&r, p, file("a", CITY), taken); /* which names it, so that it is used */
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.warnings, 0);
+    assert_false(noc_report_get_file(r.report, 0)->crs_overridden);
     finish(&r);
     LOAD(&r, p, file("a", CITY), taken, other);
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.info.lights, 2);
     assert_int_equal(r.warnings, 1);
-    assert_non_null(strstr(r.last_warning, "--crs EPSG:25832 is for inputs that name no CRS, and is not used for "));
+    assert_non_null(
+        strstr(r.last_warning, "--crs EPSG:25832 is for cities and inputs that name no CRS, and is not used for "));
     assert_non_null(strstr(r.last_warning, "/o (OGC:CRS84 (WGS 84 (CRS84)));"));
     assert_non_null(strstr(r.last_warning, "/o=EPSG:25832"));
     assert_null(strstr(r.last_warning, "/t ("));
     finish(&r);
-    p.crs = "EPSG:25833"; /* of use to none */
+    p.crs = "EPSG:31468"; /* which the coordinates do not fit: of use to none */
     LOAD(&r, p, file("a", CITY), taken);
     assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.info.lights, 1);
     assert_int_equal(r.warnings, 1);
     assert_non_null(strstr(r.last_warning, "/a (EPSG:25832 (ETRS89 / UTM zone 32N)), "));
     assert_non_null(strstr(r.last_warning, "/t (OGC:CRS84 (WGS 84 (CRS84)), its format's)"));
+    finish(&r);
+}
+
+/* A city of the given name of a CRS, with the house's coordinates in that order. */
+static const char *house_in(const char *name, const char *crs, const char *x, const char *y) {
+    char text[600];
+    snprintf(text, sizeof(text),
+             "FAKE city\ncrs %s\nobject 0 house 1\npolygon 2 %s %s 380 %s1 %s 380 %s1 %s1 380\nend\n", crs, x, y, x, y,
+             x, y);
+    return file(name, text);
+}
+
+/* --crs counts in place of what a city names; a warning has the file, both CRSs and the way between. */
+static void test_crs_replaces(void **state) {
+    (void)state;
+    struct run r;
+    static const struct {
+        const char *named, *x, *y, *given, *crs, *moved; /* moved: NULL: it is as the file names it */
+    } cases[] = {
+        { "EPSG:25833", "678000.", "5404000.", "EPSG:25832", "EPSG:25832 (ETRS89 / UTM zone 32N)",
+          "440 km from there" },
+        { "EPSG:25832", "678000.", "5404000.", "EPSG:32632", "EPSG:32632 (WGS 84 / UTM zone 32N)", "km from there" },
+        { "EPSG:4326", "678000.", "5404000.", "EPSG:25832", "EPSG:25832 (ETRS89 / UTM zone 32N)",
+          "where they have no place" },
+        /* its order, too: latitude first by the name, which is not what the file has */
+        { "EPSG:4326", "11.4227", "48.7623", "OGC:CRS84", "OGC:CRS84 (WGS 84 (CRS84))", "5393 km from there" },
+        /* what does not fit is the file's own, in its order */
+        { "EPSG:25832", "678000.", "5404000.", "EPSG:4326", "EPSG:25832 (ETRS89 / UTM zone 32N)", NULL },
+        { "EPSG:4326", "48.7623", "11.4227", "EPSG:25832", "EPSG:4326 (WGS 84)", NULL },
+        { "EPSG:25832", "678000.", "5404000.", "EPSG:25832", "EPSG:25832 (ETRS89 / UTM zone 32N)", "" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        const char *lamp = file("lamp", "FAKE lamps\ncrs =OGC:CRS84\nlamp 11.42278 48.76231\n");
+        noc_import_params p = with_crs(cases[i].given, NULL);
+        LOAD(&r, p, house_in("house", cases[i].named, cases[i].x, cases[i].y), lamp);
+        assert_int_equal(r.status, NOC_OK);
+        assert_int_equal(r.info.lights, 1); /* lamps stay where they are: the house comes to them */
+        const noc_report_file *f = noc_report_get_file(r.report, 0);
+        assert_string_equal(f->crs, cases[i].crs);
+        assert_string_equal(f->crs_given, cases[i].named);
+        assert_int_equal(f->crs_overridden, cases[i].moved && *cases[i].moved);
+        assert_int_equal(r.warnings, cases[i].moved && !*cases[i].moved ? 0 : 1);
+        if (cases[i].moved && *cases[i].moved) {
+            assert_non_null(strstr(r.last_warning, "/house: its coordinates are taken as "));
+            assert_non_null(strstr(r.last_warning, cases[i].named));
+            assert_non_null(strstr(r.last_warning, cases[i].moved));
+        } else if (!cases[i].moved) {
+            assert_non_null(strstr(r.last_warning, "is not used for "));
+        }
+        finish(&r);
+    }
+}
+
+/* Where an input may name no CRS, such as a mesh, --crs is for it alone. */
+static void test_crs_of_mesh(void **state) {
+    (void)state;
+    struct run r;
+    mesh_x = 678010, mesh_y = 5404000;
+    LOAD(&r, with_crs("EPSG:25832", NULL), file("a", "FAKE city\ncrs EPSG:25833\n" HOUSE), file("m", "FAKE mesh\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(noc_report_get_file(r.report, 0)->crs, "EPSG:25833 (ETRS89 / UTM zone 33N)");
+    assert_false(noc_report_get_file(r.report, 0)->crs_overridden);
     finish(&r);
 }
 
@@ -553,6 +618,8 @@ int main(void) {
         cmocka_unit_test(test_file_crs),
         cmocka_unit_test(test_file_crs_more),
         cmocka_unit_test(test_crs_not_used),
+        cmocka_unit_test(test_crs_replaces),
+        cmocka_unit_test(test_crs_of_mesh),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

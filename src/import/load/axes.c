@@ -53,14 +53,17 @@ noc_status axes_fix(reading *r, source_crs *s, double *xyz, size_t count, const 
     noc_status status = NOC_OK;
     for (size_t i = 0; s->crs && i < count && !s->axes_decided; i++)
         if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
-            status = decide(r, s, xyz[3 * i], xyz[3 * i + 1], id);
+            const double *p = xyz + 3 * i;
+            given_crs_fit(r, s, p[0], p[1]);
+            status = decide(r, s, p[s->turned], p[!s->turned], id);
             break;
         }
-    if (!s->crs || (!s->swap && s->shift_x == 0))
+    bool swap = s->swap != s->turned;
+    if (!s->crs || (!swap && s->shift_x == 0))
         return status;
     for (size_t i = 0; i < count; i++) {
         double *p = xyz + 3 * i, x = p[0];
-        if (s->swap) {
+        if (swap) {
             p[0] = p[1];
             p[1] = x;
         }

@@ -1,10 +1,13 @@
 /* The CRSs that the user gives to inputs: --crs for those that name none, --file-crs for one in place of what it names.
- * A --crs that overrode what files name would move all other, right files with the wrong one. */
+ * Where no input is there that may name none, --crs replaces what cities name, if their coordinates fit it; maps and
+ * tables keep theirs, as lamps in degrees beside a city whose CRS is wrong. */
 #include "import/load/load.h"
 
 #include <fnmatch.h>
+#include <math.h>
 
-#define MOST_NAMED 3 /* files in a warning */
+#define MOST_NAMED 3    /* files in a warning */
+#define FAR_OUTSIDE 3.0 /* degrees outside the CRS's area of use: coordinates do not fit it */
 
 static bool is_given(const char *crs) { return crs && crs[strspn(crs, " \t\r\n")]; }
 
@@ -121,6 +124,71 @@ noc_status given_crs_override(reading *r, const char *spelling, bool taken, cons
     return NOC_OK;
 }
 
+/* ---- --crs in place of what cities name ---- */
+
+bool given_crs_replaces(const importer *im, const input *in) {
+    bool replaces = is_given(im->params->crs) && !in->crs && in->reader->reads == NOC_READS_CITY;
+    for (size_t i = 0; i < im->input_count && replaces; i++)
+        replaces = !im->inputs[i].without_crs || im->inputs[i].crs || im->inputs[i].left_out;
+    return replaces;
+}
+
+noc_status given_crs_replace(reading *r, geo_crs **crs, geo_crs **named) {
+    const importer *im = r->im;
+    if (!*crs || !given_crs_replaces(im, r->in))
+        return NOC_OK;
+    noc_status status;
+    geo_crs *given = geo_crs_create(im->params->crs, "--crs", r->log, &status);
+    if (!given) {
+        geo_crs_destroy(*crs);
+        return given_status(status);
+    }
+    bool same = geo_crs_equal(given, *crs);
+    geo_crs_destroy(same ? given : NULL);
+    *named = same ? NULL : *crs;
+    *crs = same ? *crs : given;
+    return NOC_OK;
+}
+
+static bool has_lat_first(const geo_crs *crs) { return geo_crs_is_geographic(crs) && geo_crs_lat_first(crs); }
+
+static bool fits(geo_crs *crs, double x, double y) { return geo_crs_outside(crs, x, y) <= FAR_OUTSIDE; }
+
+void given_crs_fit(reading *r, source_crs *s, double x, double y) {
+    if (!s->named || s->fits || fits(s->crs, x, y) || fits(s->crs, y, x)) {
+        s->fits = true;
+        return;
+    }
+    bool turned = has_lat_first(s->named) != s->lat_first;
+    if (!fits(s->named, turned ? y : x, turned ? x : y))
+        return;
+    geo_crs_destroy(s->crs);
+    s->crs = s->named;
+    s->named = NULL;
+    s->turned = turned;
+    height_unit_settle(r->in, s);
+}
+
+void given_crs_replaced(reading *r, source_crs *s, const double xy[2]) {
+    if (!s->named)
+        return;
+    double to[2], from[2], x = xy[0] - s->shift_x, y = xy[1];
+    bool exchange = (has_lat_first(s->named) != s->lat_first) != s->swap;
+    bool placed = geo_crs_lonlat_near(s->crs, xy[0], xy[1], to) &&
+                  geo_crs_lonlat_near(s->named, exchange ? y : x, exchange ? x : y, from);
+    char moved[60] = "where they have no place";
+    if (placed)
+        noc_snprintf(moved, sizeof(moved), "%.*f km from there", place_distance_km(from, to) < 10 ? 3 : 0,
+                     place_distance_km(from, to));
+    noc_warn(r->log,
+             "%s: its coordinates are taken as %.100s, by --crs, in place of what it names, %.80s, %s; where the "
+             "file is right, pass --file-crs FILE=CRS for the other inputs instead",
+             r->in->path, geo_crs_name(s->crs), geo_crs_name(s->named), moved);
+    s->replaced = true;
+    geo_crs_destroy(s->named);
+    s->named = NULL;
+}
+
 /* ---- where --crs does not apply ---- */
 
 /* Returns a CRS of the input that is another than the one given, NULL: none. Sets *used if the given one applies.
@@ -159,8 +227,8 @@ void given_crs_warn(importer *im) {
     }
     if (count)
         noc_warn(im->log,
-                 "--crs %.80s is for inputs that name no CRS, and is not used for %s%s; if it is right there, pass "
-                 "--file-crs %.100s=%.80s",
+                 "--crs %.80s is for cities and inputs that name no CRS, and is not used for %s%s; if it is right "
+                 "there, pass --file-crs %.100s=%.80s",
                  im->params->crs, list, count > MOST_NAMED ? " and others" : "", first, im->params->crs);
     geo_crs_destroy(given);
 }

@@ -54,6 +54,7 @@ typedef struct input {
     geo_issues *issues;
     noc_report_file file; /* texts in the report's arena */
     bool remote;          /* read by the helper */
+    bool without_crs;     /* it may be: a mesh, a table, a Shapefile */
     bool started, repeated;
     size_t first_mesh, end_mesh; /* of the scene, that were read from it */
     size_t lamps_lost;           /* that the reader or the sink found to have no place */

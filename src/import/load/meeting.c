@@ -43,7 +43,7 @@ typedef struct witness {
 } witness;
 
 /* By the great circle, on a sphere of the Earth's size. */
-static double distance_km(const double a[2], const double b[2]) {
+double place_distance_km(const double a[2], const double b[2]) {
     const double degree = M_PI / 180;
     double dlat = (b[1] - a[1]) * degree / 2, dlon = (b[0] - a[0]) * degree / 2;
     double h = sin(dlat) * sin(dlat) + cos(a[1] * degree) * cos(b[1] * degree) * sin(dlon) * sin(dlon);
@@ -115,7 +115,7 @@ static geo_crs *crs_of(look *l, const char *srs_name) {
     bool taken = srs_name && *srs_name == GEO_CRS_TAKEN;
     const char *spelling = srs_name ? srs_name + taken : "";
     const char *given = given_crs_of(im, in);
-    bool first = given && (in->crs || !*spelling);
+    bool first = given && (in->crs || !*spelling || given_crs_replaces(im, in));
     noc_status status = NOC_OK;
     geo_crs *crs = first ? NULL : geo_crs_create_plain(spelling, in->path, NULL, &status);
     if (!crs && given && status != NOC_ERR_MEMORY)
@@ -314,9 +314,9 @@ static noc_status look_into(reading *r, input *in, witness *w, bool *known) {
 
 enum { NOT_THERE, AS_GIVEN, EXCHANGED };
 static int way_to(const witness *w, const double place[2]) {
-    if (distance_km(w->as_given, place) < APART)
+    if (place_distance_km(w->as_given, place) < APART)
         return AS_GIVEN;
-    return !w->fixed && distance_km(w->exchanged, place) < TOGETHER ? EXCHANGED : NOT_THERE;
+    return !w->fixed && place_distance_km(w->exchanged, place) < TOGETHER ? EXCHANGED : NOT_THERE;
 }
 
 /* How many can be there, and how likely they are: each that is as given counts one, faces twice as much. Files of
@@ -393,7 +393,7 @@ static bool is_odd(const importer *im, const input *in, const double given[2], c
     if (in->reader->reads == NOC_READS_CITY || !im->placed)
         return true;
     return im->scene_crs && geo_crs_lonlat_near(im->scene_crs, im->origin[0], im->origin[1], at) &&
-           distance_km(given, at) > APART && distance_km(exchanged, at) < APART;
+           place_distance_km(given, at) > APART && place_distance_km(exchanged, at) < APART;
 }
 
 noc_status meeting_exchanges(reading *r, geo_crs *crs, double x, double y, bool *exchange) {
@@ -410,8 +410,8 @@ noc_status meeting_exchanges(reading *r, geo_crs *crs, double x, double y, bool 
     if (!im->meeting.asked && is_odd(im, r->in, given, exchanged))
         status = find_place(r);
     const meeting_place *m = &im->meeting;
-    *exchange = !status && m->known && distance_km(given, m->lonlat) > APART &&
-                distance_km(exchanged, m->lonlat) < TOGETHER && !r->in->one_order;
+    *exchange = !status && m->known && place_distance_km(given, m->lonlat) > APART &&
+                place_distance_km(exchanged, m->lonlat) < TOGETHER && !r->in->one_order;
     pthread_mutex_unlock(&im->lock);
     return status;
 }

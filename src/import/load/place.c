@@ -68,9 +68,11 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
     if (!source && r->side)
         return NOC_ERR_UNSUPPORTED; /* in its turn */
     if (!source) {
-        geo_crs *crs;
+        geo_crs *crs, *named = NULL;
         noc_status status = in->crs ? given_crs_override(r, spelling, taken, place ? place : in->path, &crs)
                                     : resolve(r, spelling, place ? place : in->path, &crs);
+        if (!status && !in->crs && *spelling && !taken)
+            status = given_crs_replace(r, &crs, &named);
         if (status)
             return status;
         source = noc_calloc(1, sizeof(*source));
@@ -79,14 +81,16 @@ noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *
             free(source);
             free(kept);
             geo_crs_destroy(crs);
+            geo_crs_destroy(named);
             return noc_no_memory(r->log, in->path);
         }
-        *source = (source_crs){ .spelling = kept, .taken = taken, .crs = crs };
+        *source = (source_crs){ .spelling = kept, .taken = taken, .crs = crs, .named = named };
+        source->lat_first = crs && geo_crs_is_geographic(crs) && geo_crs_lat_first(crs);
         height_unit_settle(in, source);
     }
     r->source = source;
     if (lat_first)
-        *lat_first = source->crs && geo_crs_is_geographic(source->crs) && geo_crs_lat_first(source->crs);
+        *lat_first = source->lat_first;
     return NOC_OK;
 }
 
@@ -262,6 +266,7 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
             return status;
     }
     s->ready = true;
+    given_crs_replaced(r, s, point);
     noc_report_file *file = &r->in->file;
     const char *name = s->crs ? geo_crs_name(s->crs) : "";
     s->further = file->crs && strcmp(file->crs, name);
@@ -271,7 +276,7 @@ static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]
         file->crs = s->crs ? arena_strdup(&r->im->report->arena, name) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
         file->crs_given = arena_strdup(&r->im->report->arena, s->taken ? "" : s->spelling);
-        file->crs_overridden = r->in->crs != NULL;
+        file->crs_overridden = r->in->crs || s->replaced;
         file->crs_taken = s->taken && s->crs && !r->in->crs;
         bool heights = r->in->reader && r->in->reader->reads != NOC_READS_MESH;
         file->height_unit = heights ? s->unit : 0;
@@ -534,6 +539,7 @@ void place_forget(input *in) {
         source_crs *s = in->sources.data[i];
         geo_transform_destroy(s->to_scene);
         geo_crs_destroy(s->crs);
+        geo_crs_destroy(s->named);
         free(s->spelling);
         free(s);
     }

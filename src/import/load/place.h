@@ -15,6 +15,9 @@ typedef struct source_crs {
     char *spelling;          /* "" where the file names none */
     bool taken;              /* the file does not hold it: GEO_CRS_TAKEN */
     geo_crs *crs;            /* NULL: local metres */
+    geo_crs *named;          /* that the file names and --crs replaces, until the way is made; NULL: none */
+    bool fits, replaced;     /* the coordinates fit --crs; it has replaced what the file names */
+    bool lat_first, turned;  /* order of the tuples as readers have it; it is not that of crs */
     geo_transform *to_scene; /* NULL until the first coordinate, and for local metres */
     bool ready;              /* to_scene is made, if one is needed */
     bool further;            /* the file had another before, in which the report has its extent */
@@ -68,6 +71,14 @@ bool given_is_called(const char *path, const char *name);
 const char *given_crs_of(const importer *im, const input *in);
 /* Sets *crs to the input's own in place of `spelling`, and warns if that is another one. */
 noc_status given_crs_override(reading *r, const char *spelling, bool taken, const char *place, geo_crs **crs);
+/* Returns true if --crs counts in place of what the input names: of a city, where no input is there that may name none.
+ */
+bool given_crs_replaces(const importer *im, const input *in);
+/* Does so: *named is what --crs replaces, NULL: nothing. Destroys *crs on failure. */
+noc_status given_crs_replace(reading *r, geo_crs **crs, geo_crs **named);
+/* Gives a CRS that --crs replaces back to the file whose coordinates fit it, and not --crs. */
+void given_crs_fit(reading *r, source_crs *s, double x, double y);
+void given_crs_replaced(reading *r, source_crs *s, const double xy[2]); /* warns, as the way is made by that point */
 void given_crs_warn(importer *im); /* of inputs that name another than --crs, once all are read */
 
 /* ---- axes.c ---- */
@@ -78,6 +89,8 @@ noc_status axes_fix(reading *r, source_crs *s, double *xyz, size_t count, const 
 bool axes_doubtful(const source_crs *s); /* no coordinate lay in the CRS's area of use */
 
 /* ---- meeting.c ---- */
+
+double place_distance_km(const double a[2], const double b[2]); /* of longitudes and latitudes */
 
 /* Where the inputs meet, longitude and latitude. */
 typedef struct meeting_place {

@@ -56,6 +56,8 @@ static noc_status find_for(importer *im, input *in, const noc_reader *const *rea
     if (!in->reader && (in->named_lamps || in->named_tracks))
         in->reader = find_named(readers, head, size);
     in->remote = in->reader && in->reader->foreign && im->params->isolate && in->reader->foreign(head, size);
+    in->without_crs = in->reader && (in->reader->reads == NOC_READS_MESH ||
+                                     (in->reader->without_crs && in->reader->without_crs(head, size)));
     if (!size)
         return noc_error(log, NOC_ERR_FORMAT, "%s: the file is empty", name);
     if (!in->reader)

@@ -553,6 +553,12 @@ static noc_status read_vector(noc_stream *stream, const noc_import_params *param
 
 static bool foreign(const char *head, size_t size) { return NOC_HAVE_GDAL && find_format(head, size); }
 
+/* All but OpenStreetMap and GeoJSON. */
+static bool without_crs(const char *head, size_t size) {
+    const map_format *f = find_format(head, size);
+    return !f || (f->kind != MAP_OSM && f->kind != MAP_GEOJSON);
+}
+
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
 const noc_reader noc_reader_vector = {
     .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, ArcGIS JSON, GML, GeoPackage, Shapefile, FlatGeobuf, CSV",
@@ -561,5 +567,6 @@ const noc_reader noc_reader_vector = {
     .probe_named = lamp_csv_probe_table,
     .read = read_vector,
     .foreign = foreign,
+    .without_crs = without_crs,
     .load = gdal_load
 };
