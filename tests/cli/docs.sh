@@ -42,6 +42,41 @@ sys.exit(lost > 0 or checked < 100)
 PY
 python3 whole.py "$program" >why
 result $? "help, manual page and options.md tell each option and all its choices" "$(head -n 1 why)"
+# A number that an option has by default has a row in defaults.md, and the row has that number. What changes no luminance
+# but by its noise is named here, by group or by name.
+cat >rows.py <<'PY'
+import re, sys
+apart = ["Estimator", "Reuse (restir)", "Device", "Reading", "Built-in scenes", "Output", "Mode", "Animation", "Viewer",
+         "Bench", "General"]
+effort = ["time"]
+rows = {}
+for line in open(sys.argv[2]):
+    cells = [c.strip() for c in line.split("|")]
+    for name in re.findall("`--([a-z-]+)`", cells[1]) if len(cells) > 4 else []:
+        rows.setdefault(name, []).append(cells[2].replace(",", ""))
+group, found, lost = "", 0, 0
+for line in open(sys.argv[1]):
+    group = line[4:].strip() if line.startswith("### ") else group
+    cells = [c.strip() for c in line.split("|")]
+    name = re.match("`(?:-., )?--([a-z-]+)", cells[1]) if len(cells) > 5 else None
+    if not name or not re.fullmatch("-?[0-9.e+-]+", cells[3]) or group in apart:
+        continue
+    if name[1].endswith("seed") or name[1] in effort:
+        continue
+    found += 1
+    if not any(re.search(r"(?<![0-9.])" + re.escape(cells[3]) + r"(?![0-9.])", row) for row in rows.get(name[1], [])):
+        print("--%s (%s): no row with its default, %s" % (name[1], group, cells[3]))
+        lost += 1
+sys.exit(lost > 0 or found < 100)
+PY
+python3 rows.py "$source_dir/docs/options.md" "$source_dir/docs/defaults.md" >why
+result $? "docs/defaults.md has each number that figures hang on" "$(head -n 1 why)"
+grep -v -e '--window-cell' "$source_dir/docs/defaults.md" >fewer.md
+python3 rows.py "$source_dir/docs/options.md" fewer.md >why
+test $? = 1 && grep -q -e '--window-cell (Windows): no row' why; result $? "and would be missed if it had not" "$(cat why)"
+sed 's/| 2\.4 m |/| 2.5 m |/' "$source_dir/docs/defaults.md" >other.md
+python3 rows.py "$source_dir/docs/options.md" other.md >why
+test $? = 1 && grep -q 'no row with its default, 2.4' why; result $? "as would another number" "$(cat why)"
 for shell in bash zsh fish; do
     mkdir -p $shell && "$program" help --completion $shell >$shell/_nocturne
     if command -v $shell >/dev/null; then
