@@ -42,8 +42,8 @@ sys.exit(lost > 0 or checked < 100)
 PY
 python3 whole.py "$program" >why
 result $? "help, manual page and options.md tell each option and all its choices" "$(head -n 1 why)"
-# A number that an option has by default has a row in defaults.md, and the row has that number. What changes no luminance
-# but by its noise is named here, by group or by name.
+# A number that an option has by default has a row in defaults.md, and the row has that number. What changes no
+# luminance but by its noise is named here, by group or by name.
 cat >rows.py <<'PY'
 import re, sys
 apart = ["Estimator", "Reuse (restir)", "Device", "Reading", "Built-in scenes", "Output", "Mode", "Animation", "Viewer",
@@ -74,7 +74,8 @@ python3 rows.py "$source_dir/docs/options.md" "$source_dir/docs/defaults.md" >wh
 result $? "docs/defaults.md has each number that figures hang on" "$(head -n 1 why)"
 grep -v -e '--window-cell' "$source_dir/docs/defaults.md" >fewer.md
 python3 rows.py "$source_dir/docs/options.md" fewer.md >why
-test $? = 1 && grep -q -e '--window-cell (Windows): no row' why; result $? "and would be missed if it had not" "$(cat why)"
+test $? = 1 && grep -q -e '--window-cell (Windows): no row' why
+result $? "and would be missed if it had not" "$(cat why)"
 sed 's/| 2\.4 m |/| 2.5 m |/' "$source_dir/docs/defaults.md" >other.md
 python3 rows.py "$source_dir/docs/options.md" other.md >why
 test $? = 1 && grep -q 'no row with its default, 2.4' why; result $? "as would another number" "$(cat why)"
