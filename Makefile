@@ -8,7 +8,7 @@ NINJA = ninja $$([ -t 1 ] || echo --quiet)
 WERROR = false
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build built check gpu-report asan tsan fuzz coverage arm64 format install clean deps deps-check
+.PHONY: help demo build configured built check gpu-report asan tsan fuzz coverage arm64 format install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
@@ -48,12 +48,16 @@ demo: build
 	@echo "  build/nocturne help render"
 
 # Tests need packages that the program does not: a build folder made without them must look again.
-built: deps-check build/build.ninja
+configured: deps-check build/build.ninja
 	@[ -e build/.tests-$(WERROR) ] || { rm -f build/.tests-* && \
 		meson setup --reconfigure build -Dtests=enabled -Dwerror=$(WERROR) >build/setup.log && touch build/.tests-$(WERROR); }
+built: configured
 	@$(NINJA) -C build
 
-check: built
+# The quick suite builds what it runs. Whether build.ninja is of this tree is looked at first: the list comes with it.
+check: configured
+	@$(NINJA) -C build build.ninja
+	@$(NINJA) -C build $(if $(FULL),,$$(tools/test_targets.py build))
 	@$(if $(FULL),,NOC_SUITE=quick )tools/run-tests.sh build $(if $(FULL),,--no-suite full)
 
 # Under nine minutes; DEVICE=NAME chooses one of several.
@@ -64,6 +68,7 @@ gpu-report: built
 # share of the others, and of the programs those alone.
 asan: deps-check
 	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Dwerror=$(WERROR) -Doptimization=1 -Ddebug=false -Dc_args=-g1 -Dtests=enabled >/dev/null
+	@$(NINJA) -C build-asan build.ninja
 	@$(NINJA) -C build-asan $(if $(TURN),$$(tools/turn-tests.py build-asan build $(TURN) targets))
 	@tools/run-tests.sh build-asan --timeout-multiplier 4 $(if $(TURN),$$(tools/turn-tests.py build-asan build $(TURN)))
 

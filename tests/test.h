@@ -1,4 +1,4 @@
-/* What every test program includes. */
+/* What every test includes. */
 #ifndef NOC_TEST_H
 #define NOC_TEST_H
 
@@ -14,6 +14,28 @@
 #include <unistd.h>
 /* after the standard headers */
 #include <cmocka.h>
+
+/* One program a room holds the suites of its files (tests/main.c). There `int main(void)` of a file is no program's,
+ * and enters the suite. Files of one program must not share names that are not static. */
+#ifdef TEST_ROOM
+typedef struct test_suite {
+    const char *file;
+    int (*run)(void);
+    struct test_suite *next;
+} test_suite;
+extern test_suite *test_suites;
+
+/* What stands before it, `int`, declares a function that is nowhere. */
+#define main(none)                                                                                                     \
+    test_no_main(none);                                                                                                \
+    static int test_suite_main(none);                                                                                  \
+    __attribute__((constructor)) static void test_suite_enter(void) {                                                  \
+        static test_suite suite = { __FILE__, test_suite_main, NULL };                                                 \
+        suite.next = test_suites;                                                                                      \
+        test_suites = &suite;                                                                                          \
+    }                                                                                                                  \
+    static int test_suite_main(none)
+#endif
 
 /* cmocka 1.1 reports a skipped test as "not ok # SKIP", which Meson counts as failed. All uses are in the test's own
  * function. */

@@ -72,10 +72,7 @@ END
         -Dtests=enabled >$build/setup.log || { cat $build/setup.log >&2; exit 1; }
 fi
 # What `meson test` needs of all tests is more than these do.
-programs=
-for name; do
-    programs="$programs $(ninja -C $build -t targets all | sed -n "s|^\(tests/\([a-z]*/\)\{0,1\}$name\): .*|\1|p")"
-done
+programs=$(tools/test_targets.py $build "$@")
 # shellcheck disable=SC2086
 ninja -C $build $programs
 meson test -C $build --no-rebuild --timeout-multiplier 20 --print-errorlogs "$@"

@@ -7,7 +7,6 @@ compile without a warning: CI would refuse others without a test.
     --list    names them and what is wrong, and does nothing
     --check   looks only whether each text is in its file once, and is of this tree"""
 import argparse
-import importlib.util
 import json
 import os
 import subprocess
@@ -15,21 +14,14 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
+from mutant_list import MUTANTS  # noqa: E402
+from test_targets import introspect, targets_of  # noqa: E402
+
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(TOOLS)
 FOLDER = os.path.join(SOURCE, "build-mutants")
 TREE = os.path.join(FOLDER, "tree")
 BUILD = os.path.join(TREE, "build")
-
-
-def load(name):
-    spec = importlib.util.spec_from_file_location(name.replace("-", "_"), os.path.join(TOOLS, name + ".py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-MUTANTS = load("mutant_list").MUTANTS
 
 
 class DoesNotCompile(Exception):
@@ -68,7 +60,7 @@ def faults(mutants, source, tests=None):
 def suites_of(build):
     """{test: its suites}"""
     return {test["name"]: [suite.split(":")[-1] for suite in test["suite"]]
-            for test in load("turn-tests").introspect(build, "--tests")}
+            for test in introspect(build, "tests")}
 
 
 def make_tree():
@@ -148,7 +140,7 @@ def killed(mutant, known):
             file.write(text.replace(mutant.text, mutant.replacement))
         for full, tests in enumerate((mutant.quick, mutant.full)):
             for test in (test for test in tests if test in known):
-                if not compiles(load("turn-tests").targets_of(BUILD, [known[test]])):
+                if not compiles(targets_of(BUILD, [known[test]])):
                     raise DoesNotCompile
                 part = failing(test, full)
                 if part is not None:
@@ -164,10 +156,10 @@ def run(mutants):
     wrong = list(faults(mutants, TREE, suites_of(BUILD)))
     if wrong:
         sys.exit("\n".join(wrong))
-    known = {test["name"]: test for test in load("turn-tests").introspect(BUILD, "--tests")}
+    known = {test["name"]: test for test in introspect(BUILD, "tests")}
     quick = sorted({test for m in mutants for test in m.quick if test in known})
     say(f"building {len(quick)} tests")
-    if not compiles(load("turn-tests").targets_of(BUILD, [known[test] for test in quick])):
+    if not compiles(targets_of(BUILD, [known[test] for test in quick])):
         sys.exit("the tree does not compile")
     without_mutant(quick)
     rows, alive = [], 0

@@ -5,17 +5,14 @@ longer ones every name has its turn, one in six, whatever else there is. Without
 them are those of fuzz/: `make fuzz` runs their inputs under the same sanitizers. With `targets`: what must be built for
 them."""
 import json
-import os
-import subprocess
 import sys
 import zlib
 
+sys.dont_write_bytecode = True
+from test_targets import introspect, targets_of  # noqa: E402
+
 LONG = 1  # s
 SHARE = 6
-
-
-def introspect(build, what):
-    return json.loads(subprocess.check_output(["meson", "introspect", what, build]))
 
 
 def durations(timed):
@@ -26,16 +23,10 @@ def durations(timed):
         return {}
 
 
-def targets_of(build, tests):
-    files = {target["id"]: target["filename"] for target in introspect(build, "--targets")}
-    wanted = {name for test in tests for target in test["depends"] for name in files.get(target, [])}
-    return sorted(os.path.relpath(name, build) for name in wanted)
-
-
 def main():
     build, timed, turn = sys.argv[1], sys.argv[2], int(sys.argv[3])
     seconds = durations(timed)
-    tests = [test for test in introspect(build, "--tests") if not test["name"].startswith("fuzz-") and
+    tests = [test for test in introspect(build, "tests") if not test["name"].startswith("fuzz-") and
              (seconds.get(test["name"], 0) < LONG or zlib.crc32(test["name"].encode()) % SHARE == turn % SHARE)]
     if sys.argv[4:] == ["targets"]:
         print(*targets_of(build, tests))
