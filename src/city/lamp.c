@@ -167,14 +167,51 @@ double city_floor(const noc_scene *scene) {
     return isfinite(floor) ? floor : 0;
 }
 
+#define DECK_OFF 3.0    /* m between a lamp's elevation and the deck that it stands on, as on bridges of maps */
+#define DECK_RAISED 1.0 /* m between a deck and the ground that make a difference */
+#define DECK_STEP 1.5   /* m aside, where a deck goes on */
+#define DECK_LEVEL 0.5
+
+/* Is the top of a bridge at that place its deck, which goes on to two sides at a right angle, not a beam or a cable? */
+static bool is_deck(const noc_scene *scene, const double foot[2], double top) {
+    bool on[2] = { false };
+    for (int k = 0; k < 2; k++)
+        for (int side = -1; side < 2; side += 2) {
+            double at[2] = { foot[0], foot[1] }, z;
+            at[k] += side * DECK_STEP;
+            on[k] = on[k] ||
+                    (noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, at[0], at[1], &z) && fabs(z - top) <= DECK_LEVEL);
+        }
+    return on[0] && on[1];
+}
+
+/* On a bridge of a model, a raised one where the lamp tells no elevation: counted. */
+static bool on_bridge(const noc_scene *scene, const geo_lamp *lamp, const double foot[2], double *deck,
+                      geo_issues *issues) {
+    double low, z = lamp->xyz[2];
+    if (lamp->off_deck || !noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], deck))
+        return false;
+    if (isfinite(z) && fabs(*deck - z) < 1)
+        return true;
+    bool ground = site_ground(scene, foot[0], foot[1], &low),
+         stands = lamp->mount != GEO_MOUNT_WALL && lamp->mount != GEO_MOUNT_SUSPENDED && !lamp->body_heads;
+    if (!ground || !stands || *deck <= low + DECK_RAISED ||
+        (isfinite(z) && (fabs(*deck - z) > DECK_OFF || fabs(*deck - z) > fabs(low - z))))
+        return false;
+    bool is = is_deck(scene, foot, *deck);
+    geo_issue(issues, GEO_GUESSED,
+              is ? "lamp on a bridge of a model: put on its deck"
+                 : "lamp under a part of a bridge of a model: left on the ground",
+              lamp->id);
+    return is;
+}
+
 /* Height of the foot. */
 static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, double foot[3],
                   geo_issues *issues) {
     double deck = lamp->xyz[2];
-    bool on_deck = lamp->on_deck || (isfinite(lamp->xyz[2]) &&
-                                     noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
-                                     fabs(deck - lamp->xyz[2]) < 1);
-    if (on_deck) { /* which is no ground where it is not given as a road */
+    if (lamp->on_deck ||
+        on_bridge(scene, lamp, foot, &deck, issues)) { /* which is no ground where it is not given as a road */
         foot[2] = deck;
         return;
     }

@@ -166,6 +166,7 @@ typedef struct geo_lamp {
     uint64_t holds[GEO_CONDITIONS / 64];
     bool tells_street;
     bool on_deck;               /* xyz[2] is that of a bridge's deck, over the ground; never of a reader's */
+    bool off_deck;              /* it stands below or beside a bridge of a map; never of a reader's */
     const geo_fitting *fitting; /* NULL: no rule says anything; never of a reader's */
     const char *id, *ref;       /* what else it is called, for other files may call it so; ref may be NULL */
     const char *tags;           /* as the file has them, "key=value" a line; NULL where nobody asks (each_lamp) */

@@ -125,6 +125,44 @@ static void test_bridge(void **state) {
     finish(&r);
 }
 
+/* Lamps without an elevation stand on the deck of a model's bridge, as on those of maps, also at its edge; not on a
+ * beam, nor on a tunnel, nor under the bridge where their elevation says so. */
+static void test_bridge_untold(void **state) {
+    (void)state;
+    static const struct {
+        const char *lamp;
+        double z;
+        const char *counted; /* NULL: nothing */
+    } cases[] = {
+        { "678002 5404002", 384, "lamp on a bridge of a model: put on its deck" },
+        { "678009.5 5404009.5", 384, "lamp on a bridge of a model: put on its deck" },
+        { "678002 5404002 380.5", 384, "lamp on a bridge of a model: put on its deck" },
+        { "678002 5404002 378.5", 384, NULL },
+        { "678002 5404002 371", 376, NULL },
+        { "678030 5404000", 376, NULL },
+        { "678050.5 5404000", 376, "lamp under a part of a bridge of a model: left on the ground" },
+        { "678070 5404000", 376, NULL },
+    };
+    const char *text =
+        "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\n"
+        "polygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 677900 5404100 370\nend\nobject 6 b -1\n"
+        "polygon 14 677990 5403990 378 678010 5403990 378 678010 5404010 378 677990 5404010 378\n"
+        "polygon 14 678050 5403990 379 678051 5403990 379 678051 5404010 379 678050 5404010 379\nend\n"
+        "object 6 t -1\npolygon 14 678060 5403990 366 678080 5403990 366 678080 5404010 366 678060 5404010 366\nend\n";
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        struct run r;
+        char lamps[200];
+        snprintf(lamps, sizeof(lamps), "FAKE lamps\ncrs EPSG:25832\nlamp %s #l\n", cases[i].lamp);
+        LOAD(&r, DEFAULTS, file("bridge", text), file("l", lamps));
+        assert_int_equal(r.status, NOC_OK);
+        const noc_report_file *f = noc_report_get_file(r.report, 1);
+        assert_int_equal(f->line_count, cases[i].counted ? 1 : 0);
+        assert_true(!cases[i].counted || has_line(f, cases[i].counted, 1));
+        assert_close(r.scene->lights.data[0].p[2], cases[i].z, .02);
+        finish(&r);
+    }
+}
+
 /* The 40 lamps of Ingolstadt were surveyed with their elevation; the model has no terrain. */
 static void test_ingolstadt(void **state) {
     (void)state;
@@ -219,8 +257,9 @@ static void test_units(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system),
-                                        cmocka_unit_test(test_bridge),   cmocka_unit_test(test_built_in),
-                                        cmocka_unit_test(test_units),    cmocka_unit_test(test_ingolstadt) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed),  cmocka_unit_test(test_other_system),
+                                        cmocka_unit_test(test_bridge),    cmocka_unit_test(test_bridge_untold),
+                                        cmocka_unit_test(test_built_in),  cmocka_unit_test(test_units),
+                                        cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

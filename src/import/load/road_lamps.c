@@ -191,6 +191,7 @@ static void put_on_deck(importer *im, const city_roads *roads, pending_lamp *p) 
     bool on = p->along || is_on_deck(&c, lamp, &reason);
     if (reason)
         geo_issue(im->inputs[p->input].issues, GEO_GUESSED, reason, lamp->id);
+    lamp->off_deck = !on && reason;
     if (!on)
         return;
     lamp->xyz[2] = c.deck;
