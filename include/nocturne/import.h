@@ -23,6 +23,8 @@ typedef enum noc_lamp_default {
      * it. Counted for lamps in a scene whose light depends on it: the axis is tilted, the distribution differs between
      * its C planes by more than 5 % of its peak, or the head is more than 0.5 m off the pole's axis. */
     NOC_LAMP_DIRECTION,
+    /* lm/W of a lamp that has watts, and neither flux nor source, nor a rule or a profile's file that has one: 80 */
+    NOC_LAMP_EFFICACY,
     NOC_LAMP_DEFAULT_COUNT
 } noc_lamp_default;
 

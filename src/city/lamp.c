@@ -55,19 +55,36 @@ static bool told_colour(const geo_lamp *lamp, float rgb[3]) {
     return kelvin > 0;
 }
 
-/* lm/W of the lamp's watts: what a rule says, else of its source, else of the file of its profile. */
-static double told_efficacy(const geo_lamp *lamp, double file_lumens) {
+/* lm/W of the lamp's watts that a rule says, else the file of its profile where the lamp has no source; 0: neither. */
+static double ruled_efficacy(const geo_lamp *lamp, double file_lumens) {
     const geo_fitting *f = lamp->fitting;
-    double of_source = sources[lamp->source].lumens_per_watt;
     double of_file = f && lamp->source == GEO_SOURCE_UNKNOWN ? file_lumens / known(f->file_watts, NAN) : NAN;
-    return known(f ? f->efficacy : NAN, known(of_file, of_source));
+    return known(f ? f->efficacy : NAN, known(of_file, 0));
+}
+
+/* The same, else of its source. */
+static double told_efficacy(const geo_lamp *lamp, double file_lumens) {
+    return known(ruled_efficacy(lamp, file_lumens), sources[lamp->source].lumens_per_watt);
+}
+
+/* lm of the file of its profile, where that may count. */
+static double lumens_of_file(const geo_lamp *lamp) {
+    noc_lamp_flux flux = lamp->fitting ? lamp->fitting->flux : NOC_FLUX_ANY;
+    return lamp->fitting && flux != NOC_FLUX_LAMP ? known(lamp->fitting->file_lumens, 0) : 0;
+}
+
+/* Returns true if its flux follows from its watts by an efficacy that nothing tells. */
+static bool assumes_efficacy(const geo_lamp *lamp) {
+    double file = lumens_of_file(lamp);
+    bool by_file = lamp->fitting && lamp->fitting->flux == NOC_FLUX_FILE && file > 0;
+    return lamp->source == GEO_SOURCE_UNKNOWN && known(lamp->watts, 0) > 0 && !(known(lamp->lumens, 0) > 0) &&
+           !by_file && !(ruled_efficacy(lamp, file) > 0);
 }
 
 /* Of one head; 0 if neither the lamp nor its source nor the file of its profile tells it. */
 static double told_lumens(const geo_lamp *lamp) {
-    noc_lamp_flux flux = lamp->fitting ? lamp->fitting->flux : NOC_FLUX_ANY;
-    double file = lamp->fitting && flux != NOC_FLUX_LAMP ? known(lamp->fitting->file_lumens, 0) : 0;
-    if (flux == NOC_FLUX_FILE && file > 0)
+    double file = lumens_of_file(lamp);
+    if (lamp->fitting && lamp->fitting->flux == NOC_FLUX_FILE && file > 0)
         return file;
     double watts = known(lamp->watts, 0) * told_efficacy(lamp, file);
     return known(lamp->lumens, watts > 0 ? watts : known(file, sources[lamp->source].lumens));
@@ -79,6 +96,7 @@ bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
     case NOC_LAMP_HEIGHT: return !lamp->body_heads && !(known(lamp->height, 0) > 0);
     case NOC_LAMP_FLUX: return !(told_lumens(lamp) > 0);
     case NOC_LAMP_COLOUR: return !told_colour(lamp, rgb);
+    case NOC_LAMP_EFFICACY: return assumes_efficacy(lamp);
     case NOC_LAMP_DIRECTION:
     case NOC_LAMP_DEFAULT_COUNT: break;
     }

@@ -30,14 +30,15 @@ void cli_add_named(cli_args *args, const noc_import_params *import) {
     add_texts(args, &import->tracks);
 }
 
-/* By noc_lamp_default; without an option: chance decides. */
+/* By noc_lamp_default; without an option: unit is what is taken. */
 static const struct {
     const char *option, *what, *unit;
 } lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
     [NOC_LAMP_HEIGHT] = { "lamp-height", "height", "m" },
     [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each, 500 at most below 1.5 m" },
     [NOC_LAMP_COLOUR] = { "lamp-kelvin", "colour", "K" },
-    [NOC_LAMP_DIRECTION] = { NULL, "direction", NULL },
+    [NOC_LAMP_DIRECTION] = { NULL, "direction", "by chance" },
+    [NOC_LAMP_EFFICACY] = { NULL, "source beside their watts", "80 lm/W (efficacy of rules)" },
 };
 
 void cli_note_chosen(const cli_args *args, noc_import_params *import) {
@@ -100,7 +101,7 @@ void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAUL
         if (lamp_defaults[i].option)
             printf("%.10g %s (--%s)", values[i], lamp_defaults[i].unit, lamp_defaults[i].option);
         else
-            fputs("by chance", stdout);
+            fputs(lamp_defaults[i].unit, stdout);
         before = ", ";
     }
     if (before != heading)

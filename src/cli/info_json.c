@@ -89,6 +89,7 @@ static void lamp_details(const noc_report_file *file) {
     number("lamps_flux_assumed", (double)file->lamps_assumed[NOC_LAMP_FLUX]);
     number("lamps_colour_assumed", (double)file->lamps_assumed[NOC_LAMP_COLOUR]);
     number("lamps_direction_assumed", (double)file->lamps_assumed[NOC_LAMP_DIRECTION]);
+    number("lamps_efficacy_assumed", (double)file->lamps_assumed[NOC_LAMP_EFFICACY]);
     key("lamps_by_source");
     const char *before = "{";
     for (int s = 0; s < NOC_SOURCE_COUNT; s++) {

@@ -92,9 +92,10 @@ static void put_lamp(line *l, const noc_light_info *light, const noc_report_lamp
     static const char *const defaults[NOC_LAMP_DEFAULT_COUNT] = { [NOC_LAMP_HEIGHT] = "height",
                                                                   [NOC_LAMP_FLUX] = "lumens",
                                                                   [NOC_LAMP_COLOUR] = "kelvin",
-                                                                  [NOC_LAMP_DIRECTION] = "direction" };
+                                                                  [NOC_LAMP_DIRECTION] = "direction",
+                                                                  [NOC_LAMP_EFFICACY] = "efficacy" };
     const double *d = light->light.direction;
-    char assumed[40] = "";
+    char assumed[60] = "";
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {
         size_t n = strlen(assumed);
         if (told->assumed >> what & 1)

@@ -103,6 +103,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
                  { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
                  { "lamps-direction-assumed", t.lamps_assumed[NOC_LAMP_DIRECTION] },
+                 { "lamps-efficacy-assumed", t.lamps_assumed[NOC_LAMP_EFFICACY] },
                  { "tracks-of-cars", t.tracks },
                  { "cars", t.cars },
                  { "cars-on-roads", t.road_cars },

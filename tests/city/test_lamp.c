@@ -74,12 +74,30 @@ static void test_kelvin_back(void **state) {
 static void test_assumes(void **state) {
     geo_lamp l = lamp_at(0, 0);
     for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
-        assert_int_equal(city_lamp_assumes(&l, (noc_lamp_default)what), what != NOC_LAMP_DIRECTION);
+        assert_int_equal(city_lamp_assumes(&l, (noc_lamp_default)what), what < NOC_LAMP_DIRECTION);
     l.height = 4;
     assert_false(city_lamp_assumes(&l, NOC_LAMP_HEIGHT));
     l.watts = 50;
     assert_false(city_lamp_assumes(&l, NOC_LAMP_FLUX));
+    assert_true(city_lamp_assumes(&l, NOC_LAMP_EFFICACY)); /* its source is not known */
+    geo_fitting f = geo_no_fitting();
+    l.fitting = &f;
+    f.efficacy = 100;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
+    f = geo_no_fitting();
+    f.file_lumens = 5000;
+    assert_true(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
+    f.flux = NOC_FLUX_FILE;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
+    f.flux = NOC_FLUX_ANY;
+    f.file_watts = 45;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
+    l.fitting = NULL;
+    l.lumens = 4000;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
+    l.lumens = NAN;
     l.source = GEO_SOURCE_LED; /* white of any kind */
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_EFFICACY));
     assert_true(city_lamp_assumes(&l, NOC_LAMP_COLOUR));
     l.source = GEO_SOURCE_LOW_SODIUM;
     assert_false(city_lamp_assumes(&l, NOC_LAMP_COLOUR));

@@ -233,7 +233,7 @@ static void test_each_lamp(void **state) {
             assert_string_equal(lamp->file, "");
             assert_string_equal(lamp->road, "primary");
             assert_string_equal(lamp->rules, "town.yaml:2; rule 2; town.yaml:9");
-            assert_int_equal(lamp->assumed, 0); /* rules say all */
+            assert_int_equal(lamp->assumed, 1 << NOC_LAMP_EFFICACY); /* rules say all but lm/W */
             continue;
         }
         size_t number = (size_t)(light.light.name[strlen(light.light.name) - 1] - '1');
@@ -247,8 +247,8 @@ static void test_each_lamp(void **state) {
         assert_string_equal(lamp->profile, ring ? "flood" : "cobra-head");
         assert_true(ring ? lamp->watts == 60 : isnan(lamp->watts));
         bool lost = !*lamp->road; /* no road is near */
-        assert_int_equal(lamp->assumed,
-                         1 << NOC_LAMP_COLOUR | (ring ? 0 : 1 << NOC_LAMP_FLUX) | (lost ? 1 << NOC_LAMP_DIRECTION : 0));
+        assert_int_equal(lamp->assumed, 1 << NOC_LAMP_COLOUR | (ring ? 1 << NOC_LAMP_EFFICACY : 1 << NOC_LAMP_FLUX) |
+                                            (lost ? 1 << NOC_LAMP_DIRECTION : 0));
         if (ring) /* its road is to the north */
             assert_true(fabs(remainder(lamp->direction, 360)) < 3);
     }

@@ -172,7 +172,10 @@ static size_t guesses_at_lamps(const noc_report *report, const noc_import_params
             continue;
         guesses += t.lamps_assumed[what];
         if (!of[what].option) {
-            n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp facing by chance", t.lamps_assumed[what]);
+            n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp %s", t.lamps_assumed[what],
+                                      what == NOC_LAMP_DIRECTION
+                                          ? "facing by chance"
+                                          : "with watts and no source (a rule's efficacy counts)");
             continue;
         }
         n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)",
