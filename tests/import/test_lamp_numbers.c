@@ -93,9 +93,37 @@ static void test_watts(void **state) {
         { "2 pcs 70W", 70, 2, "" },
         { "24 LED x 3W", 72, 0, "" },
         { "70\xc2\xa0W", 70, 0, "" },
+        { "48 LED 350mA", 0, 0, "wattage not understood" },
+        { "64 LEDs 500mA 107W", 107, 0, "" },
+        { "70 LED", 70, 0, "" },
+        { "LED 70 W dimmed to 50 %", 70, 0, "dimming or share of a lamp not taken" },
     };
     (void)state;
     check("lamp_wattage", rows, NOC_COUNT(rows), watts_of);
+}
+
+/* Of descriptions: diodes are no watts, and a lamp that is dimmed is at its full flux, which is told. */
+static void test_dimmed_and_diodes(void **state) {
+    static const char diodes[] = "without watts: flux not understood",
+                      dimmed[] = "dimming or share of a lamp not taken";
+    static const row rows[] = {
+        { "48 LED 350mA", 0, 0, diodes },
+        { "48 LED, 350 mA", 0, 0, diodes },
+        { "LED 24 x 350 mA", 0, 0, diodes },
+        { "LED 48 chips", 0, 0, diodes },
+        { "64 LEDs", 0, 0, diodes },
+        { "64 LEDs 500mA 107W", 107, 0, "" },
+        { "48 LED", 48, 0, "" },
+        { "HPS 250W dimmed 50%", 250, 0, dimmed },
+        { "LED 70W dim to 30 %", 70, 0, dimmed },
+        { "LED 70W gedimmt", 70, 0, dimmed },
+        { "LED 60W 50% at night", 60, 0, dimmed },
+        { "LED dimmed 40%", 0, 0, dimmed },
+        { "LED 60W dimmable", 60, 0, "" },
+        { "HPS 250W 230V 3A", 250, 0, "" },
+    };
+    (void)state;
+    check("lamp_type", rows, NOC_COUNT(rows), watts_of);
 }
 
 static void test_heights(void **state) {
@@ -277,9 +305,10 @@ static void test_sources(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_watts),  cmocka_unit_test(test_heights),      cmocka_unit_test(test_light),
-        cmocka_unit_test(test_shares), cmocka_unit_test(test_descriptions), cmocka_unit_test(test_sources),
-        cmocka_unit_test(test_heads),
+        cmocka_unit_test(test_watts),   cmocka_unit_test(test_dimmed_and_diodes),
+        cmocka_unit_test(test_heights), cmocka_unit_test(test_light),
+        cmocka_unit_test(test_shares),  cmocka_unit_test(test_descriptions),
+        cmocka_unit_test(test_sources), cmocka_unit_test(test_heads),
     };
     return cmocka_run_group_tests_name("import/lamp_numbers", tests, NULL, NULL);
 }

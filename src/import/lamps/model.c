@@ -222,6 +222,41 @@ static size_t token_at(const tokens *t, size_t from, const char *end) {
     return from;
 }
 
+/* "350mA", "0.35 A" of the LEDs. */
+static bool is_current(const tokens *t, size_t i) {
+    static const char *const words[] = { "ma", "milliamp", "milliamps", "milliampere" };
+    bool is = false;
+    for (size_t k = 0; k < NOC_COUNT(words) && i + 1 < t->count && t->list[i].number; k++)
+        is = is || is_word(t, i + 1, words[k]);
+    return is;
+}
+
+/* "48 LED 350mA", "64 LEDs", "LED 48 chips": how many diodes, which are no watts. next: the token behind the number. */
+static bool is_diodes(const tokens *t, size_t next) {
+    static const char *const words[] = { "leds", "chip", "chips", "diode", "diodes", "dioden", "module", "modules" };
+    bool is = false, current = false;
+    for (size_t i = 0; i < t->count; i++)
+        current = current || is_current(t, i);
+    for (size_t k = 0; k < NOC_COUNT(words); k++)
+        is = is || is_word(t, next, words[k]);
+    return is || (current && (next >= t->count || is_word(t, next, "led")));
+}
+
+/* "dimmed to 50%", "70 W, gedimmt". */
+static bool is_dimmed_word(const char *word) {
+    static const char *const words[] = { "dimmed", "dim",     "dimming",  "gedimmt",  "dimmt",
+                                         "gedimd", "attenue", "atenuado", "dimmerato" };
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (!strcmp(word, words[i]))
+            return true;
+    return false;
+}
+
+static bool is_share(const char *p) {
+    p += strspn(p, "0123456789., ");
+    return *p == '%' || !strncmp(p, "\xe2\x80\xb0", 3);
+}
+
 /* Watts of the numbers from i on. next: the token behind them. */
 static void read_watts(const tokens *t, size_t i, size_t next, const lamp_number *n, bool watts_column, lamp_model *m) {
     const token *w = &t->list[i];
@@ -229,8 +264,10 @@ static void read_watts(const tokens *t, size_t i, size_t next, const lamp_number
     int times = n->times > 1 ? n->times : before ? before : n->unit ? times_behind(t, next) : 0;
     bool many = n->times > 1 || n->choice == LAMP_HEADS_EACH || within(w->value, 4, 1500);
     bool unit = n->unit && within(n->value, .5, LAMP_MOST_WATTS);
-    bool bare = !n->unit && many && within(n->value, 4, 1500) && !is_word(t, next, "x") &&
+    bool diodes = !n->unit && m->source == GEO_SOURCE_LED && is_diodes(t, next);
+    bool bare = !n->unit && !diodes && many && within(n->value, 4, 1500) && !is_word(t, next, "x") &&
                 (watts_column || beside_source(t, i, next));
+    m->diodes = m->diodes || diodes;
     if (unit && m->unit && !m->choice && fabs(n->value - m->watts) > .05 * m->watts)
         m->choice = LAMP_FIRST;
     if (!(unit && !m->unit) && !(bare && !isfinite(m->watts)))
@@ -252,6 +289,8 @@ static void read_numbers(const tokens *t, const char *text, bool watts_column, c
     for (size_t i = 0; i < t->count; i++) {
         const token *one = &t->list[i];
         lamp_number n, w;
+        m->share = m->share || (one->number && is_share(one->at));
+        m->diodes = m->diodes || (m->source == GEO_SOURCE_LED && is_current(t, i));
         if (!one->number || one->at < done)
             continue;
         bool watts = lamp_scan_quantity(one->at, LAMP_WATTS, 1, decimal, &w);
@@ -314,6 +353,7 @@ lamp_model lamp_model_of(const char *text, bool watts_column, char decimal) {
     for (size_t i = 0; i < t.count; i++) {
         const token *w = &t.list[i];
         m.clear = w->source ? NOC_MAX(m.clear, clearness(w->word)) : m.clear;
+        m.dimmed = m.dimmed || (!w->number && is_dimmed_word(w->word));
         m.plain = m.plain && (w->number || w->source || goes_with_source(w->word));
         m.strange = m.strange || (source == -1 && !w->number && !is_plain_word(w->word));
     }

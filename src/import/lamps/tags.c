@@ -203,6 +203,15 @@ static void take_model(reading *r, const char *text, const lamp_model *m) {
     }
 }
 
+/* What a description says of the flux and is not taken. share: a number of % in it is no watts' that is counted. */
+static void doubt_flux(const reading *r, const char *text, const lamp_model *m, bool share) {
+    const geo_lamp *lamp = r->lamp;
+    if (m->dimmed || (m->share && share))
+        unread(r, "dimming or share of a lamp not taken: it is at its full flux", text);
+    if (m->diodes && !isfinite(lamp->watts) && !isfinite(lamp->lumens))
+        unread(r, "LEDs by their number or current, without watts: flux not understood", text);
+}
+
 static bool lacks(const geo_lamp *lamp) { return lamp->source == GEO_SOURCE_UNKNOWN || !isfinite(lamp->watts); }
 
 /* Is a text of a column of sources and fixtures one that says something? */
@@ -240,6 +249,7 @@ static void read_free_text(reading *r, const lamp_tag *tags, size_t count) {
         bool doubtful = (model.strange || model.unclear) && r->lamp->source == GEO_SOURCE_UNKNOWN &&
                         !isfinite(r->lamp->watts) && !isfinite(r->lamp->lumens);
         take_model(r, text, &model);
+        doubt_flux(r, text, &model, true);
         if (doubtful)
             unread(r, "source of a lamp not understood", text);
         lamp_keys_described(r->keys, &tags[i]);
@@ -257,6 +267,7 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
                 continue;
             const lamp_model model = lamp_keys_model(r->keys, all[i].value, watts && rank < 2);
             take_model(r, all[i].value, &model);
+            doubt_flux(r, all[i].value, &model, !watts);
             if (!watts && (model.unclear || says_something(all[i].value, &model)))
                 lamp_keys_understood(r->keys, all[i].tag);
             if (!strange && is_strange(r, &all[i], &model))

@@ -122,6 +122,8 @@ typedef struct lamp_model {
     int clear;             /* how much a name of its source means that: 0 to 2 */
     bool unclear;          /* LAMP_SOURCES_DIFFER */
     bool strange;          /* it names no source, and has words that are not understood: "BF 125W" */
+    bool diodes;           /* its LEDs by number and current, no watts: "48 LED 350mA" */
+    bool dimmed, share;    /* it says that the lamp is dimmed; it has a number of % */
     bool plain;            /* it is the name of a source, with watts or without, and nothing else */
 } lamp_model;
 /* watts_column: a number without a unit is watts, wherever it stands. decimal: as in lamp_quantity. */
