@@ -73,7 +73,7 @@ double noc_stream_progress(const noc_stream *s); /* share of the stored bytes co
 /* x3d.c: a diffuse colour, which is a display's as other programs take it; a specular colour and shininess, 0..1. */
 void import_x3d_colour(geo_appearance *a, const double rgb[3]);
 void import_x3d_gloss(geo_appearance *a, const double specular[3], double shininess);
-void import_x3d_transparency(geo_appearance *a, double transparency);
+void import_x3d_transparency(geo_appearance *a, double transparency, geo_issues *issues); /* NaN: not understood */
 
 /* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working
  * one. */
@@ -91,6 +91,8 @@ bool import_note_named(const import_listener *listener, const char *folder, cons
 #define IMPORT_TAIL 32
 void *import_read_named(const char *folder, const char *name, bool anywhere, size_t most,
                         const import_listener *listener, size_t *size, const char **why);
+
+#define MESH_COLOURED_GLASS "coloured glass, which lets light of every colour through alike"
 
 /* An image that a material of a mesh looks like. */
 typedef struct mesh_image {

@@ -19,8 +19,12 @@ void import_x3d_colour(geo_appearance *a, const double rgb[3]) {
     }
 }
 
-void import_x3d_transparency(geo_appearance *a, double transparency) {
+void import_x3d_transparency(geo_appearance *a, double transparency, geo_issues *issues) {
     a->transmittance = isfinite(transparency) ? (float)NOC_CLAMP(transparency, 0, 1) : 0;
+    if (!isfinite(transparency))
+        geo_issue(issues, GEO_GUESSED, "transparency that is no number, taken as opaque", a->name);
+    else if (transparency < 0 || transparency > 1)
+        geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", a->name);
 }
 
 /* The exponent of a Phong lobe as alpha of GGX: Walter et al. 2007, "Microfacet Models for Refraction through Rough

@@ -88,7 +88,8 @@ static void test_glass(void **state) {
                  { "Tr 0.95\n", .95f, 0 },
                  { "d 0.05\nillum 4\nTf 0.5 0.5 0.5\n", .95f, 0 },
                  { "illum 4\nTf 0.9 0.9 0.9\n", .9f, 1 },
-                 { "illum 9\nTf 1 0.5 0\n", .2126f + .3576f, 1 },
+                 { "illum 9\nTf 1 0.5 0\n", .2126f + .3576f, 2 }, /* whose colour is not kept */
+                 { "d 0.05\nTf 1 0.5 0\n", .95f, 1 },
                  { "illum 7\nTf 1 1 1\n", 0, 1 },
                  { "illum 6\n", 0, 1 },
                  { "illum 2\nTf 0.9 0.9 0.9\n", 0, 0 } };

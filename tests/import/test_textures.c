@@ -56,6 +56,36 @@ static void test_citygml(void **state) {
     noc_scene_destroy(s);
 }
 
+/* What of the light a material of X3D lets through; what makes no sense is counted. */
+static void test_transparency(void **state) {
+    (void)state;
+    static const struct {
+        const char *said;
+        float through;
+        const char *counted;
+    } rows[] = { { "0", 0, NULL },
+                 { "0.4", .4f, NULL },
+                 { " 1 ", 1, NULL },
+                 { "1.5", 1, "material values out of range, clamped" },
+                 { "-0.5", 0, "material values out of range, clamped" },
+                 { "half", 0, "transparency that is no number, taken as opaque" } };
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        char *text = noc_format("%s<app:surfaceDataMember><app:X3DMaterial><app:transparency>%s</app:transparency>"
+                                "<app:target>#p1</app:target></app:X3DMaterial></app:surfaceDataMember>%s",
+                                HEAD, rows[i].said, TAIL);
+        write_file("clear.gml", text);
+        noc_report *report;
+        noc_scene *s = load("clear.gml", true, &report);
+        assert_float_equal(wall_material(s, 0)->transmittance, rows[i].through, 1e-6);
+        assert_float_equal(wall_material(s, 1)->transmittance, 0, 0);
+        assert_true(!rows[i].counted || told(report, rows[i].counted) == 1);
+        assert_true(rows[i].counted || (!told(report, "clamped") && !told(report, "no number")));
+        noc_report_destroy(report);
+        noc_scene_destroy(s);
+        free(text);
+    }
+}
+
 #define TEXTURED(target, ring)                                                                                         \
     "<app:surfaceDataMember><app:ParameterizedTexture><app:imageURI>one.png</app:imageURI><app:target uri='" target    \
     "'><app:TexCoordList><app:textureCoordinates" ring ">" SQUARE "</app:textureCoordinates></app:TexCoordList>"       \
@@ -208,8 +238,9 @@ static void test_halved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_citygml), cmocka_unit_test(test_targets), cmocka_unit_test(test_broken),
-        cmocka_unit_test(test_halved),  cmocka_unit_test(test_alike),   cmocka_unit_test(test_many_materials),
+        cmocka_unit_test(test_citygml),        cmocka_unit_test(test_targets), cmocka_unit_test(test_transparency),
+        cmocka_unit_test(test_broken),         cmocka_unit_test(test_halved),  cmocka_unit_test(test_alike),
+        cmocka_unit_test(test_many_materials),
     };
     return run_looks(tests, NOC_COUNT(tests));
 }

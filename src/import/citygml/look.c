@@ -238,7 +238,7 @@ void cg_material_left_out(cg_parser *p, const cg_look *look) {
 static void end_material(cg_parser *p, cg_look *look) {
     import_x3d_colour(&look->as, look->diffuse);
     import_x3d_gloss(&look->as, look->specular, look->shininess);
-    import_x3d_transparency(&look->as, look->transparency);
+    import_x3d_transparency(&look->as, look->transparency, p->sink->issues);
     cg_material_left_out(p, look);
 }
 
@@ -272,7 +272,7 @@ static void on_end(void *user, const XML_Char *name) {
     case WORD_SPECULAR: numbers_of(text, look->specular, 3); break;
     case WORD_EMISSIVE: numbers_of(text, look->emissive, 3); break;
     case WORD_SHININESS: numbers_of(text, &look->shininess, 1); break;
-    case WORD_TRANSPARENCY: look->transparency = numbers_of(text, &number, 1) ? number : 0; break;
+    case WORD_TRANSPARENCY: look->transparency = numbers_of(text, &number, 1) ? number : NAN; break;
     case WORD_TARGET:
         if (look->material)
             name_target(p, k->target ? k->target : text);

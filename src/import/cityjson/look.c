@@ -42,7 +42,9 @@ static uint32_t read_material(cj_reading *r, const json_t *material) {
     if (read_colour(material, "specularColor", look.specular) || json_is_number(shininess))
         import_x3d_gloss(&look.as, look.specular, look.shininess);
     read_colour(material, "emissiveColor", look.emissive);
-    import_x3d_transparency(&look.as, json_number_value(json_object_get(material, "transparency")));
+    const json_t *clear = json_object_get(material, "transparency");
+    import_x3d_transparency(&look.as, clear && !json_is_number(clear) ? NAN : json_number_value(clear),
+                            r->parser->sink->issues);
     const char *name = cj_text(material, "name");
     char *key =
         noc_format("m %d %.9g %.9g %.9g %.9g %.9g %.9g %s", look.as.coloured, look.as.albedo[0], look.as.albedo[1],

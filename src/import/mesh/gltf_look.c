@@ -26,6 +26,10 @@ static void no_textures(const gltf *g, const json_t *pbr, const json_t *m, const
     }
 }
 
+static bool is_coloured(const double rgb[3]) {
+    return fmax(rgb[0], fmax(rgb[1], rgb[2])) - fmin(rgb[0], fmin(rgb[1], rgb[2])) > .01;
+}
+
 /* What of the light goes through. Alpha of 1 - a lets a share of a through; so does thin glass of that transmission,
  * in the colour that it has. cutoff: alpha of the texture under which there is no surface. */
 static void let_through(const gltf *g, const json_t *m, const double base[4], double luminance, const char *name,
@@ -60,6 +64,10 @@ static void let_through(const gltf *g, const json_t *m, const double base[4], do
                       name);
         *cutoff = blend ? 128 : (uint8_t)NOC_MIN(ceil(NOC_MIN(least / alpha, 1) * 255), 255);
     }
+    if (clear > 0 && through > 0 && is_coloured(base))
+        geo_issue(g->issues, GEO_GUESSED, MESH_COLOURED_GLASS, name);
+    if (clear > 0 && json_object_get(gltf_extension(m, "KHR_materials_volume"), "attenuationDistance"))
+        geo_issue(g->issues, GEO_GUESSED, "glass that takes light on the way through, taken as clear inside", name);
     out->cutout = *cutoff > 0;
     out->transmittance = (float)through;
 }

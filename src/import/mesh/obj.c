@@ -189,6 +189,10 @@ static void clamp_colour(float rgb[3], float hi, bool *changed) {
     }
 }
 
+static bool is_coloured(const float rgb[3]) {
+    return NOC_MAX(rgb[0], NOC_MAX(rgb[1], rgb[2])) - NOC_MIN(rgb[0], NOC_MIN(rgb[1], rgb[2])) > .01f;
+}
+
 /* Illumination models of an MTL that let light through: 4, 6, 7 and 9. */
 static bool is_glass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
@@ -217,9 +221,9 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
         for (int i = 0; i < 3; i++)
             out.albedo[i] *= (1 - out.f0) / most;
     bool clear = get_float(m, "$mat.opacity", &opacity) && opacity < 1;
+    float tf[3] = { 1, 1, 1 };
+    get_colour(m, "$clr.transparent", tf);
     if (!clear && is_glass(illum)) {
-        float tf[3] = { 1, 1, 1 };
-        get_colour(m, "$clr.transparent", tf);
         clamp_colour(tf, 1, &changed);
         opacity = 1 - (0.2126f * tf[0] + 0.7152f * tf[1] + 0.0722f * tf[2]);
         clear = opacity > 0; /* a filter of 1 is also what is said of none */
@@ -235,6 +239,8 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
         geo_issue(issues, GEO_GUESSED, "transparent material that emits, taken as opaque", name);
     else if (clear)
         out.transmittance = 1 - NOC_MAX(opacity, 0);
+    if (out.transmittance > 0 && is_coloured(tf))
+        geo_issue(issues, GEO_GUESSED, MESH_COLOURED_GLASS, name);
     return out;
 }
 
