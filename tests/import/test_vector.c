@@ -564,8 +564,41 @@ static void test_unread_pbf(void **state) {
     lamp_sink_end(&s);
 }
 
+#define LAMP_OF(geometry)                                                                                              \
+    "{\"type\":\"Feature\",\"properties\":{\"highway\":\"street_lamp\",\"type\":\"Kind\"},\"geometry\":" geometry "}"
+#define OF_TYPE(type) LAMP_OF("{\"type\":\"" type "\",\"coordinates\":[8,50]}")
+
+/* GDAL passes over geometries of a type that is none: they are named. */
+static void test_strange_geometries(void **state) {
+    if (!NOC_HAVE_GDAL)
+        skip();
+    (void)state;
+    lamp_sink s;
+    lamp_sink_start(&s);
+    assert_int_equal(
+        read_lamps_text(&s,
+                        "{\"type\":\"FeatureCollection\",\"features\":[" OF_TYPE("Point") "," OF_TYPE(
+                            "Pointt") "," LAMP_OF("null") "," LAMP_OF("{\"coordinates\":[8,50],\"type\":"
+                                                                      "\"Kurve\"}") "," OF_TYPE("Pointt") "]}",
+                        NULL),
+        NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    assert_int_equal(issue_count(&s, "geometry of a type that GeoJSON has not"), 3);
+    bool named = false;
+    for (size_t i = 0; i < geo_issues_count(s.sink.issues); i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t n;
+        assert_true(geo_issues_get(s.sink.issues, i, &reason, &repaired, &n, &examples));
+        named = named || !strcmp(examples, "Pointt, Kurve");
+    }
+    assert_true(named);
+    lamp_sink_end(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_strange_geometries),
         cmocka_unit_test(test_real_counts),
         cmocka_unit_test(test_washington),
         cmocka_unit_test(test_heights),

@@ -46,6 +46,10 @@ typedef struct json_scan {
     size_t columns_depth, fields_depth; /* of what is in them; 0: in none */
     bool columns_next, fields_next;     /* such a key was read */
     size_t fields;
+    size_t geometry_depth;         /* of what is in a geometry; 0: in none */
+    bool geometry_next, type_next; /* such a key was read */
+    char strange[200];             /* map_source.strange */
+    size_t strange_count;
     uint64_t hash; /* of the string so far */
     int hex;       /* digits of \u still to come */
     unsigned code;
@@ -123,6 +127,8 @@ static noc_status key_ended(json_scan *s) {
     s->columns_next =
         !s->columns_depth && !s->crs_depth && (!strcmp(s->text, "properties") || !strcmp(s->text, "attributes"));
     s->fields_next = s->depth == 1 && !strcmp(s->text, "fields");
+    s->geometry_next = !s->geometry_depth && !s->columns_depth && !strcmp(s->text, "geometry");
+    s->type_next = s->geometry_depth && s->depth == s->geometry_depth && !strcmp(s->text, "type");
     return column && !map_columns_add(&s->columns, s->hash) ? map_columns_refuse(s->name, s->format, s->log) : NOC_OK;
 }
 
@@ -132,7 +138,9 @@ static noc_status object_begins(json_scan *s, char c) {
         s->columns_depth = s->depth;
     if (s->fields_next && c == '[')
         s->fields_depth = s->depth;
-    s->columns_next = s->fields_next = false;
+    if (s->geometry_next && c == '{')
+        s->geometry_depth = s->depth;
+    s->columns_next = s->fields_next = s->geometry_next = s->type_next = false;
     if (!s->fields_depth || c != '{' || s->depth != s->fields_depth + 1)
         return NOC_OK;
     s->fields++;
@@ -142,11 +150,31 @@ static noc_status object_begins(json_scan *s, char c) {
 static void object_ended(json_scan *s) {
     s->columns_depth = s->depth < s->columns_depth ? 0 : s->columns_depth;
     s->fields_depth = s->depth < s->fields_depth ? 0 : s->fields_depth;
+    s->geometry_depth = s->depth < s->geometry_depth ? 0 : s->geometry_depth;
+}
+
+/* ---- geometries ---- */
+
+/* Notes the type of a geometry that is none of RFC 7946. Of long names the begin alone is kept, which is enough. */
+static void type_ended(json_scan *s) {
+    static const char *const types[] = { "Point",   "MultiPoint",   "LineString",        "MultiLineString",
+                                         "Polygon", "MultiPolygon", "GeometryCollection" };
+    s->type_next = false;
+    for (size_t i = 0; i < NOC_COUNT(types); i++)
+        if (s->length == strlen(types[i]) && !strncmp(s->text, types[i], 15))
+            return;
+    s->strange_count++;
+    char item[24];
+    noc_snprintf(item, sizeof(item), "%s%.15s", *s->strange ? ", " : "", s->text);
+    if (!strstr(s->strange, s->text) && strlen(s->strange) + strlen(item) < sizeof(s->strange))
+        strcat(s->strange, item);
 }
 
 static noc_status string_ended(json_scan *s) {
     s->text[NOC_MIN(s->length, (s->crs_depth ? LONGEST : 16) - 1)] = 0;
     s->in_string = false;
+    if (s->type_next)
+        type_ended(s);
     if (!s->crs_depth)
         return NOC_OK;
     s->named = s->named || s->crs_depth == 1;
@@ -216,6 +244,7 @@ static noc_status between_strings(json_scan *s, char c) {
         object_ended(s);
         break;
     case ',':
+        s->geometry_next = s->type_next = false; /* it was no object */
         if (s->crs_depth && s->depth == s->crs_depth)
             crs_ended(s);
         break;
@@ -255,6 +284,10 @@ static noc_status check_json(map_source *m, noc_stream *stream, bool *named, boo
     }
     if (s)
         tell_odd(s, m->odd_crs, sizeof(m->odd_crs));
+    if (s) {
+        memcpy(m->strange, s->strange, sizeof(m->strange));
+        m->strange_count = s->strange_count;
+    }
     *named = s && s->named;
     *cut = s && s->cut;
     free(s);

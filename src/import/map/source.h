@@ -28,6 +28,8 @@ typedef struct map_source {
     char unpaired[64]; /* of a Shapefile: rows and shapes, where they are not as many, else "" */
     bool entered;      /* GDAL is there, and this thread's settings of it are ours */
     bool plain;        /* GDAL reads the file itself, neither unpacked nor from an archive */
+    char strange[200]; /* of a GeoJSON: types of geometries that are none, which GDAL passes over; "": there are none */
+    size_t strange_count;
     bool crs_named;    /* false: a GeoJSON without one, whose CRS is its format's */
     char odd_crs[400]; /* of a GeoJSON: the first feature whose CRS is not the file's, and both; "": there is none */
     const char *name, *format;

@@ -512,6 +512,9 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
     if (m.source.unpaired[0])
         geo_issue(sink->issues, GEO_SKIPPED,
                   "rows and shapes of a Shapefile that are not in both, its .dbf and its .shx", m.source.unpaired);
+    if (m.source.strange_count)
+        geo_issues_add(sink->issues, GEO_SKIPPED, "geometry of a type that GeoJSON has not", m.source.strange_count,
+                       m.source.strange);
     if (!status)
         status = refuse_odd_crs(&m);
     if (!status)
