@@ -357,18 +357,31 @@ static void choose(const witness *all, size_t count, meeting_place *place) {
         }
 }
 
+/* Of NOC_READS_CITY, LAMPS and TRACKS; -1: it tells nothing. */
+static int kind_of(const input *in) {
+    if (!in->reader || in->left_out || in->repeated)
+        return -1;
+    switch (in->reader->reads) {
+    case NOC_READS_CITY: return 0;
+    case NOC_READS_LAMPS: return 1;
+    case NOC_READS_TRACKS: return 2;
+    default: return -1;
+    }
+}
+
 static noc_status find_place(reading *r) {
     importer *im = r->im;
+    size_t inputs = 0;
+    for (size_t i = 0; i < im->input_count; i++)
+        inputs += kind_of(&im->inputs[i]) >= 0;
+    if (inputs < 2)
+        return NOC_OK;
     size_t most = NOC_MIN(im->input_count, 3 * MOST_LOOKS), looks[3] = { 0 }, count = 0;
     witness *all = noc_calloc(most + 1, sizeof(*all));
     noc_status status = all ? NOC_OK : noc_no_memory(r->log, r->in->path);
     for (size_t i = 0; i < im->input_count && !status; i++) {
         input *in = &im->inputs[i];
-        int kind = !in->reader || in->left_out || in->repeated ? -1
-                   : in->reader->reads == NOC_READS_CITY       ? 0
-                   : in->reader->reads == NOC_READS_LAMPS      ? 1
-                   : in->reader->reads == NOC_READS_TRACKS     ? 2
-                                                               : -1;
+        int kind = kind_of(in);
         bool known = false;
         if (kind < 0)
             continue;
