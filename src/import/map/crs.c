@@ -353,6 +353,8 @@ static noc_status check_prj(const char *path, const char *name, noc_log *log) {
     VSILFILE *f = text && apart ? gdal.VSIFOpenL(path, "rb") : NULL;
     size_t n = f ? gdal.VSIFReadL(text, 1, LONGEST, f) : 0;
     noc_status status = text && apart ? NOC_OK : noc_no_memory(log, name);
+    if (!status && !(f && (n == LONGEST || gdal.VSIFEofL(f))))
+        status = noc_error(log, NOC_ERR_IO, "%s: its .prj cannot be read", name);
     if (n == LONGEST)
         status = noc_error(log, NOC_ERR_FORMAT, "%s: its .prj has more than %d bytes", name, LONGEST);
     if (!status && n) {

@@ -38,7 +38,8 @@
     X(OGR_G_Is3D) X(OGR_G_IsEmpty) X(OGR_GT_Flatten) X(OGR_L_GetFeatureCount) X(OGR_L_GetLayerDefn) X(OGR_L_GetName)   \
     X(OGR_L_GetNextFeature) X(OGR_L_GetSpatialRef) X(OGR_L_ResetReading) X(OGRRegisterAll) X(OSRExportToWktEx)         \
     X(OSRGetAuthorityCode) X(OSRGetAuthorityName) X(OSRIsCompound) X(OSRIsGeographic) X(VSIFCloseL)                    \
-    X(VSIFileFromMemBuffer) X(VSIFOpenL) X(VSIFReadL) X(VSIFree) X(VSIGetMemFileBuffer) X(VSIReadDir) X(VSIUnlink)
+    X(VSIFEofL) X(VSIFileFromMemBuffer) X(VSIFOpenL) X(VSIFReadL) X(VSIFree) X(VSIGetMemFileBuffer) X(VSIReadDir)      \
+    X(VSIUnlink)
 /* clang-format on */
 
 typedef struct gdal_functions {

@@ -53,6 +53,28 @@ noc_status map_check_shapefile(const char *path, bool anywhere, const import_lis
     return status;
 }
 
+noc_status map_check_told(const char *path, noc_log *log) {
+    static const char *const endings[] = { ".prj", ".PRJ", ".cpg", ".CPG" };
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    int stem = (int)(dot ? (size_t)(dot - path) : strlen(path));
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < NOC_COUNT(endings) && !status; i++) {
+        char *part = noc_format("%.*s%s", stem, path, endings[i]), piece[4096];
+        if (!part)
+            return noc_no_memory(log, path);
+        FILE *file = fopen(part, "rbe");
+        bool good = file || errno == ENOENT;
+        while (file && fread(piece, 1, sizeof(piece), file) == sizeof(piece))
+            ;
+        if (!good || (file && ferror(file)))
+            status = noc_error(log, NOC_ERR_IO, "%s: its part %s cannot be read: %s", path, part, strerror(errno));
+        if (file)
+            fclose(file);
+        free(part);
+    }
+    return status;
+}
+
 #if NOC_HAVE_GDAL
 /* Reads the first bytes of the part with that ending, in one case or the other. */
 static bool read_head(const char *path, const char *const endings[2], uint8_t *head, size_t size) {

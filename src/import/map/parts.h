@@ -12,6 +12,9 @@
  * NULL, gets their paths. */
 noc_status map_check_shapefile(const char *path, bool anywhere, const import_listener *listener, noc_log *log);
 
+/* Can what tells its CRS and its encoding (.prj, .cpg) be read to the end, where it is there? An error is reported. */
+noc_status map_check_told(const char *path, noc_log *log);
+
 #if NOC_HAVE_GDAL
 /* Says in text[size] how many rows and shapes the Shapefile has, where its .dbf and its .shx disagree; else "". path is
  * GDAL's. GDAL reads those that both have, and tells nobody. */

@@ -270,7 +270,8 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
                          why_not);
     gdal_enter(m);
     noc_status status = gdal_path(stream, log, &path, &m->plain);
-    if (!status && m->plain && format->kind == MAP_SHAPEFILE)
+    m->parts = m->plain && format->kind == MAP_SHAPEFILE;
+    if (!status && m->parts)
         status = map_check_shapefile(m->name, anywhere, noc_stream_listener(stream), log);
     if (!status && format->kind == MAP_SHAPEFILE)
         map_count_shapefile(path, m->unpaired, sizeof(m->unpaired));
@@ -325,7 +326,7 @@ noc_status map_source_check(const map_source *m, noc_stream *stream) {
     for (size_t got = 1; !status && m->plain && got;)
         status = noc_stream_read(stream, piece, PIECE, &got);
     free(piece);
-    return status;
+    return status || !m->parts ? status : map_check_told(m->name, m->log);
 }
 
 void map_source_close(map_source *m) {

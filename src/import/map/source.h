@@ -28,6 +28,7 @@ typedef struct map_source {
     char unpaired[64]; /* of a Shapefile: rows and shapes, where they are not as many, else "" */
     bool entered;      /* GDAL is there, and this thread's settings of it are ours */
     bool plain;        /* GDAL reads the file itself, neither unpacked nor from an archive */
+    bool parts;        /* and it is a Shapefile, with parts beside it */
     char strange[200]; /* of a GeoJSON: types of geometries that are none, which GDAL passes over; "": there are none */
     size_t strange_count;
     bool crs_named;    /* false: a GeoJSON without one, whose CRS is its format's */
@@ -47,7 +48,8 @@ typedef struct map_source {
  * name files. To be closed after an error, too. */
 noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log);
 noc_status map_source_error(const map_source *m); /* reports m->error */
-/* After GDAL has read it: can all of a plain file be read? GDAL takes one that cannot be read on for one that ends. */
+/* After GDAL has read it: can all of a plain file be read? GDAL takes one that cannot be read on for one that ends, and
+ * a Shapefile whose CRS or encoding cannot be read for one that tells none. */
 noc_status map_source_check(const map_source *m, noc_stream *stream);
 void map_source_close(map_source *m);
 
