@@ -131,9 +131,10 @@ static void print_summary(const build_args *args, const noc_scene *scene, const 
     char a[64], b[64], path[240];
     noc_scene_get_info(scene, &info);
     noc_report_get_totals(report, &totals);
-    noc_built_get_info(args->output, NULL, &file);
-    printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
-    printf("  built     %s in %s\n", noc_text_bytes(a, file.bytes), noc_text_seconds(b, seconds));
+    printf("%s\n  built     ", noc_text_clean(path, sizeof(path), args->output));
+    if (noc_built_get_info(args->output, NULL, &file) == NOC_OK)
+        printf("%s in ", noc_text_bytes(a, file.bytes));
+    printf("%s\n", noc_text_seconds(b, seconds));
     printf("  scene     %s, %s", noc_text_many(a, info.triangles, "triangle"), noc_text_many(b, info.lights, "light"));
     if (info.windows)
         printf(", %s", noc_text_many(a, info.windows, "window"));
