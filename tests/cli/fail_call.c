@@ -72,25 +72,26 @@ static bool is_regular(const char *path) {
     return !stat(path, &st) && S_ISREG(st.st_mode);
 }
 
-/* Is a file of that path, which is not there, in the folder or in one below it? */
-static bool would_be_in(const char *path, const char *folder) {
-    char parent[PATH_MAX], whole[PATH_MAX];
-    snprintf(parent, sizeof(parent), "%s", path);
-    char *slash = strrchr(parent, '/');
-    if (!slash || access(path, F_OK) == 0)
-        return false;
-    *slash = 0;
-    size_t length = strlen(folder);
-    return realpath(parent, whole) && !strncmp(whole, folder, length) && (!whole[length] || whole[length] == '/');
-}
-
 /* Returns true if the path is one of another folder's descriptor. */
 static bool is_elsewhere(const call *c, const unsigned long long *arguments, const char *path) {
     return c->path == 1 && *path != '/' && (int)arguments[0] != AT_FDCWD;
 }
 
-/* The file of that call; false where it has none that counts. Paths that do not begin with / are taken as those of the
- * folder, in which the program runs. */
+/* Makes a path of the program's own folder a whole one, without links; of a file that is not there its folder must be.
+ */
+static bool resolve(pid_t tid, char *path) {
+    char seen[PATH_MAX], whole[PATH_MAX];
+    int n = snprintf(seen, sizeof(seen), "/proc/%d/cwd/%s", (int)tid, path);
+    if (n < 0 || n >= PATH_MAX)
+        return false;
+    if (realpath(seen, whole))
+        return strcpy(path, whole);
+    char *slash = strrchr(seen, '/');
+    *slash = 0;
+    return realpath(seen, whole) && snprintf(path, PATH_MAX, "%s/%s", whole, slash + 1) < PATH_MAX;
+}
+
+/* The file of that call; false where it has none that counts. */
 static bool file_of(pid_t tid, const call *c, const unsigned long long *arguments, const char *folder, char *file) {
     char link[64];
     ssize_t n;
@@ -108,17 +109,16 @@ static bool file_of(pid_t tid, const call *c, const unsigned long long *argument
     if (n <= 0)
         return false;
     file[n] = 0;
-    char *gone = strstr(file, " (deleted)");
-    if (c->descriptor && gone)
-        return false;
     size_t length = strlen(folder);
-    if (*file == '/' && (strncmp(file, folder, length) || file[length] != '/'))
+    bool relative = *file != '/'; /* other paths are taken as they are: most are those of libraries */
+    if (c->descriptor ? strstr(file, " (deleted)") != NULL
+                      : is_elsewhere(c, arguments, file) || (relative && !resolve(tid, file)))
         return false;
-    if (is_elsewhere(c, arguments, file))
+    if (strncmp(file, folder, length) || file[length] != '/')
         return false;
     bool makes = c->number == SYS_creat ||
                  ((c->number == SYS_open || c->number == SYS_openat) && (arguments[c->path + 1] & O_CREAT));
-    return is_regular(file) || (makes && would_be_in(file, folder));
+    return is_regular(file) || (makes && access(file, F_OK));
 }
 
 static void stop(pid_t tid, const char *folder, const char *fail, unsigned long *count, FILE *report) {
@@ -145,7 +145,9 @@ static void stop(pid_t tid, const char *folder, const char *fail, unsigned long 
 int main(int argc, char **argv) {
     if (argc < 5)
         return 2;
-    const char *folder = argv[1];
+    char folder[PATH_MAX];
+    if (!realpath(argv[1], folder))
+        return 2;
     unsigned long count = 0;
     pid_t program = fork();
     if (!program) {

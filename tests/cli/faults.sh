@@ -2,12 +2,12 @@
 # Each opening, reading, writing, flushing and renaming of an input or output fails, in turn, in whichever process of
 # the program it is, and of an input what is done to it from then on (fail_call.c). The program then ends with an error,
 # leaves what stood in the output's place, and nothing else; or its output has the same numbers; or a warning names the
-# file.
+# file, or it is counted. Each format that is read or written has a row.
 . "$(dirname "$0")/lib.sh"
 here=$source_dir/tests/cli
-fail_call=${NOC_FAIL_CALL:?names fail_call}
+fail_call=${NOC_FAIL_CALL:?names fail_call} seeds=${NOC_BUILD:?names the build folder}/fuzz/seeds
 export ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0" # which cannot be where a program is traced
-mkdir in
+mkdir in made
 "$fail_call" "$work/in" 0 report /bin/true
 if [ $? = 77 ]; then
     skip "each call fails once" "no call can be made to fail on this machine"
@@ -24,18 +24,19 @@ same() {
     cmp -s "$1" "whole.${1##*.}" && return
     [ "${1##*.}" = exr ] && "$program" compare "$1" whole.exr | grep -Eq "$equal"
 }
+told() { sed -n 's/^  inputs *features skipped//p' out; } # what of the inputs was counted
 equal='^  all pixels +[0-9]+ +0.000 +0 +0 '
 # judge OUTPUT BEFORE: what is wrong after a call that failed
 judge() {
     if [ $status = 0 ]; then
         warned="^nocturne: warning: .*$(head -n 1 report | sed 's|.*/||') cannot be read"
-        grep -q "$warned" err || same "$1" || echo "another result, and no error"
+        grep -q "$warned" err || same "$1" || ! told | cmp -s - told || echo "another result, and no error"
     elif [ $status -gt 2 ] || ! grep -q '^nocturne: ' err; then
         echo "status $status without an error"
     elif [ "$(cat "$1")" != old ]; then
         echo "what was there is lost"
-    elif [ "$(ls -A in)" != "$2" ]; then
-        echo "it leaves $(ls -A in | tr '\n' ' ')"
+    elif [ "$(ls -A in made)" != "$2" ]; then
+        echo "it leaves $(ls -A in made | tr '\n' ' ')"
     fi
 }
 # faults NAME OUTPUT ARGUMENT...
@@ -44,10 +45,11 @@ faults() {
     shift 2
     failing 0 report "$program" "$@"
     calls=$(tail -n 1 report)
-    cp "$output" "whole.${output##*.}" && [ $status = 0 ] && [ "$calls" -ge 3 ] || why="status $status, $calls calls"
+    told >told
+    cp "$output" "whole.${output##*.}" && [ $status = 0 ] && [ "$calls" -ge 2 ] || why="status $status, $calls calls"
     while [ -z "$why" ] && [ "$i" -le "$calls" ]; do
         echo old >"$output"
-        before=$(ls -A in)
+        before=$(ls -A in made)
         failing "$i$mode" report "$program" "$@"
         wrong=$(judge "$output" "$before")
         [ -z "$wrong" ] || why="$wrong: $i of $calls, $(head -n 1 report)"
@@ -56,18 +58,18 @@ faults() {
     done
     [ -z "$why" ]; result $? "$name: $calls calls" "$why"
 }
-# picture NAME INPUT...: of inputs
-picture() {
+# built NAME ARGUMENT...: a city of inputs that lie in in/. It lies elsewhere: how one is written has a row of its own
+built() {
     name=$1
     shift
-    faults "$name" in/x.exr render "$@" --size 24x16 --frames 1 --threads 1 -o in/x.exr
+    faults "$name" made/x.noct build "$@" --threads 1 -o made/x.noct
 }
 
 cd "$work" || exit 1
 cp "$here/city.gml" in
 lamp_model && mv lamp.obj lamp.mtl in
-python3 - <<'PY'
-import base64, json, struct, zlib
+python3 - "$seeds" <<'PY'
+import base64, json, struct, sys, zipfile, zlib
 # a checkered floor as a PNG, a glTF of a triangle that shines with its buffer beside it
 def chunk(kind, data):
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -100,17 +102,60 @@ TILT=NONE
 0
 300 200 0
 """)
-open("in/city.yaml", "w").write("nocturne: 1\ninputs: [city.gml, lamps.geojson, map.osm]\nlamp-profile: down.ies\n")
+open("in/city.yaml", "w").write("nocturne: 1\ninputs: [city.gml, lamps.geojson]\nlamp-profile: down.ies\n")
+# a street and a place of it, points of a luxmeter, and corners as a camera of 240 x 160 pixels at 8, -8, 6 sees them
+open("street.osm", "w").write("""<osm version="0.6"><node id="1" lat="52.5" lon="13.4"/>
+<node id="2" lat="52.5" lon="13.4002"/>
+<node id="11" lat="52.50003" lon="13.4001"><tag k="highway" v="street_lamp"/></node>
+<way id="21"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/><tag k="name" v="Well Lane"/></way></osm>
+""")
+corners = [[13.4, 52.49998], [13.4002, 52.49998], [13.4002, 52.50002], [13.4, 52.50002], [13.4, 52.49998]]
+json.dump({"type": "Polygon", "coordinates": [corners]}, open("in/area.geojson", "w"))
+open("in/points.txt", "w").write("0 0 0.001 0 0 1\n1 0 0.001 0 0 1\n")
+dot = lambda a, b: sum(i * j for i, j in zip(a, b))
+eye, ahead, right, up = (8, -8, 6), (-.64, .64, -.424), (.7071, .7071, 0), (-.3, .3, .906)
+photo = "240,160\n"
+for p in (5, 5, 0), (-5, 5, 0), (-5, -5, 0), (5, -5, 0), (.5, .5, 2), (-.5, -.5, 2):
+    d = [a - b for a, b in zip(p, eye)]
+    photo += "%g,%g,%g,%g,%g\n" % (120 + 150 * dot(d, right) / dot(d, ahead), 80 - 150 * dot(d, up) / dot(d, ahead), *p)
+open("in/photo.csv", "w").write(photo)
+for name, text in ("jpeg.mtl", "newmtl floor\nmap_Kd grey.jpg\n"), ("jpeg.obj",
+        "mtllib jpeg.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl floor\nf 3/3 2/2 1/1\n"):
+    open("in/" + name, "w").write(text)
+zipfile.ZipFile(sys.argv[1] + "/shp/lamps.zip").extractall("in")
 PY
+cp "$seeds/ply/text.ply" "$seeds/cityjson/whole.json" "$seeds/tracks/small.gpx" "$seeds/ldt/0.ldt" \
+    "$seeds/overpass/roads.json" "$seeds/terrain/floats.tif" "$seeds/pbf/lamps.pbf" "$seeds/fgb/lamps.fgb" \
+    "$seeds/pixels/grey.jpg" in
+python3 "$here/geopackage.py" in/lamps.gpkg plain
+gzip -c in/city.gml >in/city.gml.gz
+cp in/lamp.obj in/lamp.mtl in/floor.png .
+"$program" build lamp.obj -q -o lamp.noct 2>err
+"$program" build street.osm --map-surfaces -q -o street.noct 2>err
+"$program" render lamp.noct -q --size 8x4 --frames 1 -o in/sky.exr
 mode=+
-picture "OBJ, MTL, PNG, glTF, its buffer, and an environment light" in/lamp.obj in/lit.gltf --environment in/sky.hdr
+built "OBJ, MTL, PNG, glTF, its buffer, and an environment light" in/lamp.obj in/lit.gltf --environment in/sky.hdr
+built "PLY" in/text.ply
+built "CityJSON" in/whole.json
+built "CityGML in gzip, and a track" in/city.gml.gz in/small.gpx
+built "EULUMDAT" "$here/city.gml" --lamp-profile in/0.ldt
+built "a JPEG and an EXR" in/jpeg.obj --environment in/sky.exr
+built "Overpass JSON" in/roads.json
+faults "points of a photograph" made/x.exr render lamp.noct --photo-points in/photo.csv --size 24x16 --frames 1 \
+    --threads 1 -o made/x.exr
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
-    picture "a recipe, CityGML, GeoJSON, a map and a luminaire file" in/city.yaml
-    python3 "$here/geopackage.py" in/lamps.gpkg plain
-    picture "a GeoPackage and a table of lamps" in/lamps.gpkg in/lamps.csv
+    built "a recipe, CityGML, GeoJSON and a luminaire file" in/city.yaml
+    built "OpenStreetMap" in/map.osm
+    built "OSM PBF" in/lamps.pbf
+    built "a table of lamps" in/lamps.csv
+    built "a GeoPackage" in/lamps.gpkg
+    built "a Shapefile" in/lamps.shp
+    built "FlatGeobuf" in/lamps.fgb
+    built "a GeoTIFF of heights" in/floats.tif
+    faults "a region of a file" made/x.csv influence street.noct --error 0.5 --threads 1 \
+        --region polygon:in/area.geojson --csv made/x.csv
 else
-    skip "a recipe, CityGML, GeoJSON, a map and a luminaire file" "no GDAL"
-    skip "a GeoPackage and a table of lamps" "no GDAL"
+    skip "what GDAL reads, and a region of a file" "no GDAL"
 fi
 mode=
 faults "a PNG" in/x.png render builtin:single --size 24x16 --frames 1 --threads 1 -o in/x.png
@@ -118,8 +163,52 @@ faults "a table of who lights a place" in/x.csv influence in/city.gml --error 0.
     --csv in/x.csv
 faults "influence volumes as OBJ" in/x.obj render builtin:single --candidates influence --size 24x16 --frames 1 \
     --threads 1 -o away.png --influence-obj in/x.obj
+quick="--sky 0 --error 0.5 --samples 16 --threads 1"
+# shellcheck disable=SC2086 # options
+faults "a raster of lux" in/x.tif measure lamp.noct $quick --grid 5 -o in/x.tif
+# shellcheck disable=SC2086
+faults "readings at points of a file" in/x.csv measure lamp.noct $quick --points in/points.txt -o in/x.csv
+# shellcheck disable=SC2086
+faults "figures of streets" in/x.geojson measure street.noct $quick --streets in/x.geojson
+faults "an EXR, an HDR and their difference" in/x.png compare in/sky.exr in/sky.hdr -o in/x.png
+faults "two PNG" made/x.png compare in/floor.png in/floor.png -o made/x.png
+faults "a built city as it is written" in/x.noct build lamp.obj --threads 1 -o in/x.noct
 "$program" build in/city.gml -q -o in/city.noct 2>err
-picture "a built city" in/city.noct
+faults "a built city, and an EXR" in/x.exr render in/city.noct --size 24x16 --frames 1 --threads 1 -o in/x.exr
+# A film: it is whole or what was there, and so is each picture of those that stay beside it.
+pictures="--animate --frames 2 --samples 1 --size 16x16 --threads 1"
+if command -v ffmpeg >/dev/null; then
+    mkdir films
+    # shellcheck disable=SC2086 # options
+    "$program" render lamp.noct -q $pictures --no-mp4 -o films/%d.png 2>err
+    calls=0 i=0 why=
+    while [ -z "$why" ] && [ "$i" -le "$calls" ]; do
+        rm -rf in && mkdir in && echo old >in/x.mp4
+        # shellcheck disable=SC2086
+        failing "$i" report "$program" render lamp.noct $pictures -o in/x.mp4
+        if [ "$i" = 0 ]; then
+            calls=$(tail -n 1 report) && cp in/x.mp4 films && [ "$calls" -ge 20 ] || why="status $status, $calls calls"
+        fi
+        if [ $status = 0 ]; then
+            cmp -s in/x.mp4 films/x.mp4 || why="another film, and no error"
+        elif [ $status -gt 2 ] || ! grep -q '^nocturne: ' err; then
+            why="status $status without an error"
+        elif [ "$(cat in/x.mp4)" != old ]; then
+            why="what was there is lost"
+        fi
+        for file in $(find in -type f ! -name x.mp4); do
+            cmp -s "$file" "films/$(echo "$file" | tr -dc '12').png" || why="$why it leaves $file"
+        done
+        [ -z "$why" ] || why="$why: $i of $calls, $(head -n 1 report)"
+        [ -n "${NOC_ALL_FAULTS:-}" ] && [ -n "$why" ] && echo "# film: $why" && why=
+        i=$((i + 1))
+    done
+    [ -z "$why" ]; result $? "a film: $calls calls" "$why"
+else
+    skip "a film" "ffmpeg is not here"
+fi
+mkdir -p in
+cp "$here/city.gml" in
 # A recipe that init makes has its name when it is on the disk.
 mkdir in/made
 failing 0 report "$program" init in/made in/city.gml

@@ -85,7 +85,7 @@ chosen 4 >"$work/all"
 report "the turn of a test is its own" "$(grep -vxFf "$work/half" "$work/all")" ""
 : >"$log"
 report "without times all tests are chosen" "$(chosen 1 | wc -l)" "$lines"
-report "what they need is built" "$(chosen 1 targets | grep -cxE 'nocturne|tests/test-base|fuzz/seeds')" 2
+report "what they need is built" "$(chosen 1 targets | grep -cxE 'nocturne|tests/test-base|fuzz/fuzz_image')" 2
 
 # tools/test_targets.py: what `make check` builds, and who runs some tests by name.
 targets() { python3 "$source_dir/tools/test_targets.py" "$build" "$@" 2>"$work/err" | tr ' ' '\n'; }
