@@ -6,10 +6,12 @@
 
 #define HORIZON 9000.0 /* m at least, from the middle */
 #define RINGS 9
-#define DEEPEST 8.0 /* m a building's lowest walls are extended */
-#define DEEP 1.2    /* m those of its walls are that begin higher: more would close doors and passages */
-#define STEP 6.0    /* m between the points of a skirt */
-#define INTO 0.15   /* m that skirts reach into the ground */
+#define DEEPEST 8.0      /* m a building's lowest walls are extended */
+#define DEEP 1.2         /* m those of its walls are that begin higher: more would close doors and passages */
+#define STEP 6.0         /* m between the points of a skirt, */
+#define STEPS 100e3      /* of all, and */
+#define STEPS_A_FOOT 8.0 /* for each foot of a wall: beyond, points are farther apart. Cities have 2 to 4 */
+#define INTO 0.15        /* m that skirts reach into the ground */
 
 void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, int material) {
     if (count < 3 || count > 100000)
@@ -70,10 +72,14 @@ bool city_wall_foot(const float *a, const float *b, const float *c) {
     return length > .05 && rise < .3 * length && c[2] > NOC_MAX(a[2], b[2]) + .02;
 }
 
+static double steps_of(const float *a, const float *b, double step) {
+    return NOC_CLAMP(ceil(hypot((double)b[0] - a[0], (double)b[1] - a[1]) / step), 1, 1000);
+}
+
 /* Down from the edge a, b to the terrain, where that lies lower, but not much lower. */
-static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b, double deepest) {
-    double length = hypot((double)b[0] - a[0], (double)b[1] - a[1]), gap = 0;
-    int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, 1000);
+static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b, double deepest, double step) {
+    double gap = 0;
+    int steps = (int)steps_of(a, b, step);
     size_t first = s->xyz.len;
     for (int i = 0; i <= steps; i++) {
         double u = (double)i / steps, p[3], z;
@@ -101,7 +107,40 @@ static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b
     }
 }
 
+/* The corners of a triangle of which corner i is the first. */
+static void corners_from(const noc_scene *scene, const uint32_t *v, size_t i, const float *corner[3]) {
+    for (size_t k = 0; k < 3; k++)
+        corner[k] = scene->positions.data + 3 * (size_t)v[i - i % 3 + (i + k) % 3];
+}
+
+static bool has_feet(const noc_scene *scene, const noc_scene_mesh *mesh) {
+    return scene->materials.data[mesh->material].cls == NOC_CLASS_WALL && !mesh->aloft;
+}
+
+/* m between the points: what small files can make of long walls is bounded. */
+static double find_step(const noc_scene *scene, size_t first_mesh) {
+    double feet = 0, steps = 0;
+    for (size_t m = first_mesh; m < scene->meshes.len; m++) {
+        const noc_scene_mesh *mesh = &scene->meshes.data[m];
+        const uint32_t *v = scene->indices.data + 3 * (size_t)mesh->first_triangle;
+        const float *c[3];
+        for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count && has_feet(scene, mesh); i++) {
+            corners_from(scene, v, i, c);
+            if (!city_wall_foot(c[0], c[1], c[2]))
+                continue;
+            feet++;
+            steps += steps_of(c[0], c[1], STEP);
+        }
+    }
+    double wider = steps / (STEPS + STEPS_A_FOOT * feet);
+    if (wider > 1)
+        noc_warn(scene->log, "foundations: walls are so long that they reach the ground in steps %.1f times as wide",
+                 wider);
+    return STEP * NOC_MAX(wider, 1);
+}
+
 void city_add_skirts(noc_scene *scene, size_t first_mesh) {
+    double step = find_step(scene, first_mesh);
     size_t materials = scene->materials.len, meshes = scene->meshes.len;
     skirt *skirts = noc_calloc(materials, sizeof(*skirts));
     if (!skirts) {
@@ -110,7 +149,7 @@ void city_add_skirts(noc_scene *scene, size_t first_mesh) {
     }
     for (size_t m = first_mesh; m < meshes && !scene->no_memory; m++) {
         const noc_scene_mesh *mesh = &scene->meshes.data[m];
-        if (scene->materials.data[mesh->material].cls != NOC_CLASS_WALL || mesh->aloft)
+        if (!has_feet(scene, mesh))
             continue;
         const uint32_t *v = scene->indices.data + 3 * (size_t)mesh->first_triangle;
         double lowest = INFINITY;
@@ -118,11 +157,10 @@ void city_add_skirts(noc_scene *scene, size_t first_mesh) {
             lowest = NOC_MIN(lowest, scene->positions.data[3 * (size_t)v[i] + 2]);
         for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; i++) {
             const float *corner[3];
-            for (size_t k = 0; k < 3; k++)
-                corner[k] = scene->positions.data + 3 * (size_t)v[i - i % 3 + (i + k) % 3];
+            corners_from(scene, v, i, corner);
             if (city_wall_foot(corner[0], corner[1], corner[2]))
                 add_skirt(scene, &skirts[mesh->material], corner[0], corner[1],
-                          NOC_MIN(corner[0][2], corner[1][2]) < lowest + .1 ? DEEPEST : DEEP);
+                          NOC_MIN(corner[0][2], corner[1][2]) < lowest + .1 ? DEEPEST : DEEP, step);
         }
     }
     for (size_t m = 0; m < materials; m++) {

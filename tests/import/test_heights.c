@@ -256,10 +256,39 @@ static void test_units(void **state) {
     }
 }
 
+/* Long walls that cross in one small file: what is drawn under them is bounded, and told. */
+static void test_long_feet(void **state) {
+    (void)state;
+    enum { WALLS = 900 };
+    char *text = noc_alloc(100 * WALLS + 100);
+    size_t n = (size_t)sprintf(text, "FAKE city\ncrs EPSG:25832\nobject 0 b 1\n");
+    for (int i = 0; i < WALLS; i++) {
+        double a = M_PI * i / WALLS, x = 500 * cos(a), y = 500 * sin(a);
+        n += (size_t)sprintf(text + n, "polygon 1 %.0f %.0f %g %.0f %.0f %g %.0f %.0f 9 %.0f %.0f 9\n", 678000 - x,
+                             5404000 - y, i % 7 * .2, 678000 + x, 5404000 + y, i % 5 * .2, 678000 + x, 5404000 + y,
+                             678000 - x, 5404000 - y);
+    }
+    sprintf(text + n, "end\n");
+    struct run r;
+    noc_import_params p = DEFAULTS;
+    p.infer_lamps = NOC_SWITCH_OFF;
+    LOAD(&r, p, file("long", text));
+    assert_int_equal(r.status, NOC_OK);
+    size_t feet = 0;
+    for (size_t m = 0; m < r.scene->meshes.len; m++) {
+        const char *name = r.scene->meshes.data[m].name;
+        feet += name && !strcmp(name, "foundations") ? r.scene->meshes.data[m].triangle_count : 0;
+    }
+    print_message("# %zu triangles under %d walls\n", feet, WALLS);
+    assert_true(feet > 100000 && feet < 2 * (100000 + 8 * WALLS) + 4 * WALLS); /* 300,000 without the bound */
+    finish(&r);
+    free(text);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed),  cmocka_unit_test(test_other_system),
-                                        cmocka_unit_test(test_bridge),    cmocka_unit_test(test_bridge_untold),
-                                        cmocka_unit_test(test_built_in),  cmocka_unit_test(test_units),
-                                        cmocka_unit_test(test_ingolstadt) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed),      cmocka_unit_test(test_other_system),
+                                        cmocka_unit_test(test_bridge),        cmocka_unit_test(test_long_feet),
+                                        cmocka_unit_test(test_bridge_untold), cmocka_unit_test(test_built_in),
+                                        cmocka_unit_test(test_units),         cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
