@@ -483,6 +483,41 @@ static void test_many_pieces(void **state) {
     assert_true(looked_at(row, MANY, MANY) < 40 * MANY);
 }
 
+/* Pieces whose boxes lie over one another and that do not touch, as the teeth of a comb: facets take pairs of them all.
+ * Beyond a bound the building has no windows, which is counted; a part of them has as many as ever. */
+static void test_bounded_pairs(void **state) {
+    (void)state;
+    enum { FEW = 100 };
+    static wall_triangle comb[MANY];
+    const noc_window_params p = noc_window_default_params();
+    city_windows out = { 0 };
+    for (int i = 0; i < MANY; i++)
+        set_triangle(&comb[i], (double[]){ i, 0, 0 }, (double[]){ i + .5, 0, 0 }, (double[]){ i + 1000., 0, 1000 });
+    assert_int_equal(city_windows_make("b", NOC_USE_FLATS, comb, MANY, &p, NULL, SIZE_MAX, &out), NOC_OK);
+    assert_int_equal(out.crowded, 1);
+    assert_int_equal(out.list.len + out.facades.len, 0);
+    assert_int_equal(out.verdicts.len, MANY);
+    assert_int_equal(city_windows_make("b", NOC_USE_FLATS, comb, FEW, &p, NULL, SIZE_MAX, &out), NOC_OK);
+    assert_int_equal(out.crowded, 0);
+    assert_int_equal(out.facades.len, FEW);
+    city_windows_free(&out);
+}
+
+/* A wall of many triangles under each of its cells: tests of those are bounded, too. */
+static void test_bounded_tests(void **state) {
+    (void)state;
+    enum { LAYERS = 4000 };
+    static wall_triangle layers[LAYERS];
+    const noc_window_params p = noc_window_default_params();
+    city_windows out = { 0 };
+    for (int i = 0; i < LAYERS; i++) /* holes between them: no cell is all wall before the last is tested */
+        set_triangle(&layers[i], (double[]){ 0, 0, 0 }, (double[]){ 2000, 0, .01 * i },
+                     (double[]){ 2000, 0, .01 * i + 60 });
+    assert_int_equal(city_windows_make("b", NOC_USE_FLATS, layers, LAYERS, &p, NULL, SIZE_MAX, &out), NOC_OK);
+    assert_int_equal(out.crowded, 1);
+    city_windows_free(&out);
+}
+
 static void test_no_memory(void **state) {
     (void)state;
     walls w;
@@ -534,11 +569,12 @@ static void test_crowded(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),      cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
-        cmocka_unit_test(test_shapes),    cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
-        cmocka_unit_test(test_uses),      cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
-        cmocka_unit_test(test_levels),    cmocka_unit_test(test_luminances), cmocka_unit_test(test_many_pieces),
-        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_crowded),
+        cmocka_unit_test(test_grid),          cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
+        cmocka_unit_test(test_shapes),        cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
+        cmocka_unit_test(test_uses),          cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
+        cmocka_unit_test(test_levels),        cmocka_unit_test(test_luminances), cmocka_unit_test(test_many_pieces),
+        cmocka_unit_test(test_no_memory),     cmocka_unit_test(test_crowded),    cmocka_unit_test(test_bounded_pairs),
+        cmocka_unit_test(test_bounded_tests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -218,7 +218,7 @@ static bool gather(const flat_list *flat, double lo, double hi, uint32_t *near, 
 }
 
 bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_params *p, const building_use *use,
-                     double foot, city_window_list *out) {
+                     double foot, size_t *tests, size_t most_tests, city_window_list *out) {
     const double slack = 1e-3; /* m: a wall of exactly three cells has three */
     flat_list flat = { 0 };
     double cell = p->cell, span = s->length + slack;
@@ -234,8 +234,9 @@ bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_para
     for (int shops = street; ok && shops >= 0; shops--) {
         int step = shops ? SHOP_CELLS : 1;
         double first = shops ? start + 0.5 * (double)(columns % SHOP_CELLS) * cell : start;
-        for (long c = 0; ok && c < columns / step; c++) {
+        for (long c = 0; ok && c < columns / step && *tests < most_tests; c++) {
             size_t count;
+            *tests += flat.len / 8; /* which are sooner seen not to matter */
             double at = first + (double)(c * step) * cell;
             if (!gather(&flat, at - p->margin, at + step * cell + p->margin, near, &count))
                 continue;
@@ -248,7 +249,10 @@ bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_para
                 place_of(p, &k, at, step, lo, hi);
                 const double a[2] = { lo[0] - p->margin, lo[1] - p->margin },
                              b[2] = { hi[0] + p->margin, hi[1] + p->margin };
-                if (b[1] > s->hi + slack || !is_wall(flat.data, near, count, a, b))
+                if (b[1] > s->hi + slack)
+                    continue;
+                *tests += count - 1; /* one is what every cell takes */
+                if (!is_wall(flat.data, near, count, a, b))
                     continue;
                 city_window w = window_at(f, s, lo, hi, p->offset);
                 w.storey = (int)r;

@@ -245,6 +245,7 @@ static bool add_neighbours(growth *g, uint32_t at, const wall_plane *plane, uint
         return false;
     size_t kept = 0;
     g->facets->looked_at += g->found.len;
+    g->facets->cut = g->facets->most_pairs && g->facets->looked_at > g->facets->most_pairs;
     for (size_t i = 0; i < g->found.len; i++) {
         uint32_t b = g->found.data[i];
         if (in_plane(plane, &pieces[b]) && ranked_touch(g, at, b))
@@ -264,7 +265,7 @@ static bool grow(growth *g, uint32_t seed) {
     uint32_t number = (uint32_t)w->facets.len;
     facet f = { .first = (uint32_t)w->by_facet.len };
     bool ok = add_piece(g, seed, number);
-    for (size_t done = f.first; ok && done < w->by_facet.len; done++)
+    for (size_t done = f.first; ok && done < w->by_facet.len && !w->cut; done++)
         ok = add_neighbours(g, w->by_facet.data[done], &g->planes[seed], number);
     if (!ok)
         return false;
@@ -277,6 +278,7 @@ bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out
     size_t some = 0;
     growth g = { .facets = out };
     out->pieces.len = out->facets.len = out->by_facet.len = out->looked_at = 0;
+    out->cut = false;
     if (!array_reserve(&out->pieces, count))
         return false;
     for (size_t i = 0; i < count; i++)
@@ -286,7 +288,7 @@ bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out
     while (some < count && out->pieces.data[some].area > 1e-6)
         some++;
     bool ok = start_growth(&g, some);
-    for (size_t i = 0; ok && i < some; i++)
+    for (size_t i = 0; ok && i < some && !out->cut; i++)
         ok = out->pieces.data[i].facet != NO_FACET || grow(&g, (uint32_t)i);
     free_growth(&g);
     return ok;

@@ -49,6 +49,8 @@ typedef struct wall_facets {
     NOC_ARRAY(facet) facets;
     NOC_ARRAY(uint32_t) by_facet; /* indices of pieces, facet after facet */
     size_t looked_at;             /* pairs of pieces, until the facets were found */
+    size_t most_pairs;            /* that may be looked at; 0: all */
+    bool cut;                     /* more would have been needed: facets are not all there is of them */
 } wall_facets;
 
 /* Around the walls of a building; width: of its widest facet. */
@@ -98,8 +100,9 @@ strip wall_strip_get(const wall_facets *f, const wall_strips *s, size_t index);
 /* The place of (s, t) on the wall, and the way the wall faces there. */
 void wall_strip_place(const wall_facets *f, const strip *s, double along, double t, double p[3], const wall_plane **at);
 
-/* cells.c. Adds the windows of a strip: corners, storey, column, kind. foot: height of the building's lowest wall. */
+/* cells.c. Adds the windows of a strip: corners, storey, column, kind. foot: height of the building's lowest wall.
+ * *tests: of triangles under cells, so far; from most_tests on no further windows are found. */
 bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_params *params, const building_use *use,
-                     double foot, city_window_list *out) NOC_MUST_USE;
+                     double foot, size_t *tests, size_t most_tests, city_window_list *out) NOC_MUST_USE;
 
 #endif

@@ -52,6 +52,13 @@ static size_t drop_hidden(city_window_list *list, size_t first, const city_cover
     return hidden;
 }
 
+/* What the windows of a building may cost: pairs of pieces of wall that facets are found by, and tests of pieces under
+ * cells. A piece takes up to 20 and 41 in the cities of shared/data. */
+#define MOST_PAIRS 2000000u
+#define PAIRS_A_PIECE 200u
+#define MOST_TESTS 5000000u
+#define TESTS_A_PIECE 400u
+
 /* What the windows of a building are made by. */
 typedef struct window_maker {
     const building_box *box;
@@ -59,18 +66,19 @@ typedef struct window_maker {
     const noc_window_params *params;
     const city_cover *cover;
     size_t looks, most_looks;
+    size_t tests, most_tests; /* of triangles under cells */
 } window_maker;
 
 /* The windows that a facade shall have, behind those that there are. False: no memory. */
 static bool find_windows(window_maker *m, const wall_facets *f, const strip *s, city_facade *facade,
                          city_windows *out) {
     size_t first = out->list.len, hidden = 0;
-    bool crowded = m->looks >= m->most_looks;
+    bool crowded = m->looks >= m->most_looks || m->tests >= m->most_tests;
     if (!crowded) {
-        if (!wall_cells_find(f, s, m->params, m->use, m->box->lo[2], &out->list))
+        if (!wall_cells_find(f, s, m->params, m->use, m->box->lo[2], &m->tests, m->most_tests, &out->list))
             return false;
         hidden = drop_hidden(&out->list, first, m->cover, &m->looks, m->most_looks);
-        crowded = m->looks >= m->most_looks;
+        crowded = m->looks >= m->most_looks || m->tests >= m->most_tests;
     }
     out->crowded += crowded;
     facade->windows = out->list.len - first;
@@ -108,6 +116,7 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
     wall_facets f = { 0 };
     wall_strips strips = { 0 };
     out->list.len = out->facades.len = out->verdicts.len = out->crowded = 0;
+    f.most_pairs = MOST_PAIRS + PAIRS_A_PIECE * count;
     bool ok = wall_facets_find(walls, count, &f) && wall_strips_find(&f, params->cell, &strips) &&
               array_reserve(&out->verdicts, NOC_MAX(count, 1u));
     if (ok && count)
@@ -116,6 +125,11 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
     building_box b = building_box_of(&f);
     building_use use = city_building_use(id, told, b.hi[2] - b.lo[2], b.width);
     window_maker m = { .box = &b, .use = &use, .params = params, .cover = cover, .most_looks = looks };
+    m.most_tests = MOST_TESTS + TESTS_A_PIECE * count;
+    if (f.cut) { /* its walls are too many over one another to be told apart */
+        out->crowded++;
+        strips.first.len = 0;
+    }
     for (size_t i = 0; ok && i + 1 < strips.first.len; i++) {
         strip s = wall_strip_get(&f, &strips, i);
         ok = add_facade(&f, &s, &m, out);
