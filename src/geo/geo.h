@@ -398,6 +398,7 @@ bool geo_block_make(const geo_block *b, geo_block_add add, void *ctx);
  * skipped. */
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);
 void geo_triangles_free(geo_triangles *t);
+extern size_t geo_most_points; /* of a polygon; one of more is skipped. Tests lower it */
 
 void geo_issues_clear(geo_issues *issues); /* as if nothing had been counted */
 

@@ -8,7 +8,6 @@
 #define PLANE_TOLERANCE 0.01 /* m; points further off the best plane make a polygon non-planar */
 #define LARGEST 1e6          /* m; no surface of a city is wider, and floats could not hold it */
 #define MOST_HOLES 1000      /* that are compared with each other */
-#define MOST_POINTS 20000000 /* of a polygon; ten times the largest that is known of a map */
 #define MOST_LOOKS 200000000 /* at edges of the exterior, to tell of holes outside of it */
 #define SMALLEST_AREA 1e-8   /* m2 */
 
@@ -295,6 +294,8 @@ static void put_ring(struct work *w, size_t n) {
     w->ring_size.data[w->ring_size.len++] = n;
 }
 
+size_t geo_most_points = 20000000; /* ten times the largest that is known of a map */
+
 /* Rings cleaned into w, plane found, holes turned. False if the polygon was skipped. */
 static bool prepare(struct work *w, const geo_polygon *polygon) {
     struct defects found = { 0 };
@@ -302,7 +303,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
     size_t count = polygon->ring_count ? polygon->ring_size[0] : 0, i = 0, points = 0;
     for (size_t r = 0; r < polygon->ring_count; r++)
         points += polygon->ring_size[r];
-    if (points > MOST_POINTS) {
+    if (points > geo_most_points) {
         geo_issue(w->issues, GEO_SKIPPED, "polygon of more than 20 million points", w->id);
         return false;
     }

@@ -214,6 +214,17 @@ static void test_skipped(void **state) {
 
 /* Random simple polygons (star-shaped about a point) with a star-shaped hole, in random planes far from the origin: the
  * area is the shoelace formula's, the triangles number n - 2 (and 2 more a hole), all face the ring's way. */
+/* Of 20 million points at most. */
+static void test_most_points(void **state) {
+    (void)state;
+    const size_t most = geo_most_points;
+    assert_int_equal(most, 20000000);
+    geo_most_points = 4;
+    expect(RUN(0, 0, 5, 4, 0, 5, 4, 3, 5, 0, 3, 5), 12, 1);
+    expect_skipped(RUN(0, 0, 5, 4, 0, 5, 5, 1, 5, 4, 3, 5, 0, 3, 5), "polygon of more than 20 million points");
+    geo_most_points = most;
+}
+
 static void test_random_polygons(void **state) {
     (void)state;
     for (int round = 0; round < 3000; round++) {
@@ -379,12 +390,13 @@ static void test_long_spike(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_simple_shapes),   cmocka_unit_test(test_star),
-        cmocka_unit_test(test_holes),           cmocka_unit_test(test_repairs),
-        cmocka_unit_test(test_non_planar),      cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage),
-        cmocka_unit_test(test_tangle),          cmocka_unit_test(test_large),
-        cmocka_unit_test(test_long_spike),      cmocka_unit_test(test_issue_examples),
+        cmocka_unit_test(test_simple_shapes),  cmocka_unit_test(test_star),
+        cmocka_unit_test(test_holes),          cmocka_unit_test(test_repairs),
+        cmocka_unit_test(test_non_planar),     cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_most_points),    cmocka_unit_test(test_random_polygons),
+        cmocka_unit_test(test_garbage),        cmocka_unit_test(test_tangle),
+        cmocka_unit_test(test_large),          cmocka_unit_test(test_long_spike),
+        cmocka_unit_test(test_issue_examples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -95,6 +95,27 @@ static void refused(const char *path, const char *part) {
     expanded_free(&e);
 }
 
+/* A million of inputs, and of names in a folder. */
+static void test_most_files(void **state) {
+    (void)state;
+    const size_t most = expand_most_files;
+    assert_int_equal(most, 1000000);
+    expanded e = { 0 };
+    const char *path = folder;
+    assert_int_equal(expand_inputs(&path, 1, log_, &e), NOC_OK);
+    size_t count = e.files.len;
+    expanded_free(&e);
+    expand_most_files = count; /* as many as there are */
+    assert_int_equal(expand_inputs(&path, 1, log_, &e), NOC_OK);
+    expanded_free(&e);
+    expand_most_files = count - 1;
+    refused(folder, "inputs");
+    refused(folder, "more than");
+    expand_most_files = 1; /* in one folder */
+    refused(folder, "more than 1 inputs");
+    expand_most_files = most;
+}
+
 static void test_expansion(void **state) {
     assert_string_equal(one("builtin:city"), "builtin:city");
     assert_string_equal(one(in_folder("/gone.gml")), "/gone.gml"); /* who opens it says so */
@@ -252,9 +273,8 @@ static void test_terrain_and_lamps(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_expansion),         cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_pictures),          cmocka_unit_test(test_box),
-        cmocka_unit_test(test_terrain_and_lamps),
+        cmocka_unit_test(test_expansion), cmocka_unit_test(test_most_files), cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_pictures),  cmocka_unit_test(test_box),        cmocka_unit_test(test_terrain_and_lamps),
     };
     return cmocka_run_group_tests_name("import/inputs", tests, start, finish);
 }

@@ -121,6 +121,22 @@ static void test_broken(void **state) {
     assert_int_equal(scene->indices.len, 0);
 }
 
+/* An element has 64 properties at most. */
+static void test_most_properties(void **state) {
+    (void)state;
+    for (int count = 64; count < 66; count++) {
+        char text[4000];
+        size_t n = (size_t)snprintf(text, sizeof(text), "ply\nformat ascii 1.0\nelement vertex 0\n");
+        for (int i = 0; i < count; i++)
+            n += (size_t)snprintf(text + n, sizeof(text) - n, "property float p%d\n", i);
+        snprintf(text + n, sizeof(text) - n, "end_header\n");
+        if (count == 64)
+            assert_int_equal(read_bytes(text, strlen(text)), NOC_OK);
+        else
+            refuse(text, "a property that is not understood, or too many of them");
+    }
+}
+
 static void test_probe(void **state) {
     static const char yes[] = "ply\r\nformat ascii 1.0\r\n", no[] = "plywood\nformat ";
     assert_true(noc_reader_ply.probe(yes, strlen(yes)));
@@ -143,9 +159,8 @@ static int finish(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_text),
-        cmocka_unit_test(test_binary),
-        cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_text),   cmocka_unit_test(test_binary),
+        cmocka_unit_test(test_broken), cmocka_unit_test(test_most_properties),
         cmocka_unit_test(test_probe),
     };
     return cmocka_run_group_tests_name("import/ply", tests, start, finish);

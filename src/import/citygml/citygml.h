@@ -12,10 +12,9 @@
 
 #include <stdatomic.h>
 
-#define CG_MAX_DEPTH 200          /* elements in elements */
-#define CG_MAX_NUMBERS (1u << 25) /* in one polygon; more is taken for an attack */
-#define CG_MAX_CRS 64             /* different srsNames in one file */
-#define CG_MAX_KINDS 64           /* of objects that are left out, told apart */
+#define CG_MAX_DEPTH 200 /* elements in elements */
+#define CG_MAX_CRS 64    /* different srsNames in one file */
+#define CG_MAX_KINDS 64  /* of objects that are left out, told apart */
 #define CG_NONE UINT32_MAX
 #define CG_EMITTED UINT32_MAX
 
@@ -100,11 +99,15 @@ const char *cg_local_name(const char *name);
 /* ---- coordinates as text (text.c) ---- */
 
 /* Collects numbers from character data that comes in pieces. */
+/* In one polygon, and bytes of text in an appearance: 1 << 25; more is taken for an attack. Tests lower it. */
+extern size_t cg_most_numbers;
+
 typedef struct cg_numbers {
     NOC_ARRAY(double) values;
+    bool many;      /* more than cg_most_numbers: the rest is not kept */
     char token[64]; /* a number cut by the end of a piece */
     uint32_t token_len;
-    bool bad;             /* something that is no number, or too many of them */
+    bool bad;             /* something that is no number */
     bool refused;         /* memory, to one of them; stays set */
     char cs, ts, decimal; /* gml:coordinates; 0, 0, '.' for lists separated by blanks */
     uint32_t tuple;       /* gml:coordinates: numbers a tuple, 0 before the first ended */

@@ -178,8 +178,8 @@ static void on_text(void *user, const XML_Char *text, int size) {
     cg_parser *p = user;
     if (p->status || !p->looks.inside)
         return;
-    if (p->looks.text.len + (size_t)size > CG_MAX_NUMBERS)
-        cg_fail(p, NOC_ERR_FORMAT, "more than %u bytes of text in an appearance", CG_MAX_NUMBERS);
+    if (p->looks.text.len + (size_t)size > cg_most_numbers)
+        cg_fail(p, NOC_ERR_FORMAT, "more than %zu bytes of text in an appearance", cg_most_numbers);
     else if (!array_append(&p->looks.text, text, (size_t)size))
         cg_no_memory(p);
 }

@@ -71,7 +71,7 @@ void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension) {
         dimension = 3;
     if (p->numbers.bad)
         p->ring_fault = "coordinates that are not numbers";
-    else if (p->xyz.len + count > CG_MAX_NUMBERS)
+    else if (p->numbers.many || p->xyz.len + count > cg_most_numbers)
         p->ring_fault = "polygon with too many points";
     else if (!count && code != CG_POS)
         return; /* an empty list: too few points, found at the ring's end */

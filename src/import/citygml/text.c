@@ -33,16 +33,18 @@ static const char *scan_plain(const char *s, const char *end, double *out) {
 void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts) {
     n->values.len = 0;
     n->token_len = 0;
-    n->bad = n->after_cs = false;
+    n->bad = n->many = n->after_cs = false;
     n->decimal = decimal;
     n->cs = cs;
     n->ts = ts;
     n->tuple = n->in_tuple = 0;
 }
 
+size_t cg_most_numbers = (size_t)1 << 25;
+
 static void push(cg_numbers *n, double value) {
-    if (n->values.len >= CG_MAX_NUMBERS)
-        n->bad = true;
+    if (n->values.len >= cg_most_numbers)
+        n->many = true;
     else if (!array_push(&n->values, value))
         n->refused = true;
     n->in_tuple++;
@@ -116,7 +118,7 @@ static void add_tuples(cg_numbers *n, const char *s, const char *end) {
 }
 
 void cg_numbers_add(cg_numbers *n, const char *text, size_t size) {
-    if (n->bad)
+    if (n->bad || n->many)
         return;
     if (n->ts)
         add_tuples(n, text, text + size);

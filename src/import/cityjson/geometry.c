@@ -55,7 +55,7 @@ static void read_ring(builder *b, const json_t *ring, const json_t *texture, boo
     cg_parser *p = b->r->parser;
     size_t count = json_array_size(ring);
     cg_ring_begin(p, exterior, NULL);
-    if (p->xyz.len + 3 * count > CG_MAX_NUMBERS)
+    if (p->xyz.len + 3 * count > cg_most_numbers)
         p->ring_fault = "polygon with too many points";
     for (size_t i = 0; i < count && !p->ring_fault; i++) {
         const double *xyz = point_of(b, json_array_get(ring, i));

@@ -8,7 +8,6 @@
 #include <glob.h>
 #include <sys/stat.h>
 
-#define MOST_FILES 1000000
 #define MOST_FOLDERS 32 /* in folders */
 
 typedef struct expansion {
@@ -19,9 +18,15 @@ typedef struct expansion {
 
 static noc_status no_memory(expansion *x, const char *path) { return noc_no_memory(x->log, path); }
 
+size_t expand_most_files = 1000000;
+
+static noc_status too_many(expansion *x, const char *path) {
+    return noc_error(x->log, NOC_ERR_ARGUMENT, "%s: more than %zu inputs", path, expand_most_files);
+}
+
 static noc_status add(expansion *x, const char *path) {
-    if (x->out->files.len == MOST_FILES)
-        return noc_error(x->log, NOC_ERR_ARGUMENT, "%s: more than %d inputs", path, MOST_FILES);
+    if (x->out->files.len == expand_most_files)
+        return too_many(x, path);
     expanded_file file = { arena_strdup(&x->out->arena, path), x->folder };
     return file.path && array_push(&x->out->files, file) ? NOC_OK : no_memory(x, path);
 }
@@ -48,9 +53,10 @@ static noc_status list_folder(expansion *x, const char *path, names *list) {
         if (*entry->d_name == '.')
             continue;
         char *name = noc_strdup(entry->d_name);
-        if (!name || list->len == MOST_FILES || !array_push(list, name)) {
+        bool full = list->len == expand_most_files;
+        if (!name || full || !array_push(list, name)) {
             free(name);
-            status = no_memory(x, path);
+            status = full ? too_many(x, path) : no_memory(x, path);
         }
     }
     closedir(dir);

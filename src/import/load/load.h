@@ -26,6 +26,7 @@ typedef struct expanded {
 } expanded;
 noc_status expand_inputs(const char *const *paths, size_t count, noc_log *log, expanded *out);
 void expanded_free(expanded *e);
+extern size_t expand_most_files; /* inputs, and names in one folder: a million. Tests lower it */
 
 /* A building, as far as it tells units [m]. */
 typedef struct building_size {
