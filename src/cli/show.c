@@ -14,7 +14,7 @@ const noc_option *cli_show_options(void) {
         { "show", "Mode", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
           "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object|group|placed|"
           "motion|luminance|illuminance|"
-          "influential|influential-share|runner-up|runner-up-share",
+          "influential|influential-share|runner-up|runner-up-share|expected",
           "", "the picture, or in its place a view of light, sampling or surfaces" },
         TEXT("show-range", show_range, "LOW,HIGH", "ends of the view's colour bar; else found from its numbers"),
         { "show-scale", "Mode", NOC_OPTION_CHOICE, offsetof(A, range.scale), 0, 0, "auto|linear|log", "",

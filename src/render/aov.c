@@ -25,6 +25,7 @@ static const char *const names[NOC_AOV_COUNT] = {
     [NOC_AOV_INFLUENTIAL_SHARE] = "influential-share",
     [NOC_AOV_RUNNER_UP] = "runner-up",
     [NOC_AOV_RUNNER_UP_SHARE] = "runner-up-share",
+    [NOC_AOV_EXPECTED] = "expected",
 };
 
 const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
@@ -47,6 +48,9 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT,
                          "render: view \"lights\": only ris and restir with candidates influence or lists ask for "
                          "the lights around a point");
+    if (asks(p, NOC_AOV_EXPECTED) && !(has_query(p) && p->candidates == NOC_CANDIDATES_LISTS))
+        return noc_error(log, NOC_ERR_ARGUMENT,
+                         "render: view \"expected\": only ris and restir with candidates lists expect light of a list");
     for (size_t i = 0; i < NOC_COUNT(of_reservoirs); i++)
         if (asks(p, of_reservoirs[i]) && (p->method == NOC_METHOD_REFERENCE || p->method == NOC_METHOD_HEADLIGHT))
             return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": the %s method chooses no light",
@@ -107,6 +111,7 @@ static const struct {
     [NOC_AOV_INFLUENTIAL_SHARE] = { "share of the light that brings the most", "", NOC_CHANNEL_LINEAR },
     [NOC_AOV_RUNNER_UP] = { "light that brings the second most: each its own colour", "", NOC_CHANNEL_LABELS },
     [NOC_AOV_RUNNER_UP_SHARE] = { "share of the light that brings the second most", "", NOC_CHANNEL_LINEAR },
+    [NOC_AOV_EXPECTED] = { "luminance expected of the list [cd/m\xb2]", "cd/m2", NOC_CHANNEL_LOG },
 };
 
 noc_aov_info noc_aov_get_info(noc_aov aov) {

@@ -10,12 +10,13 @@
 enum {
     /* by the passes, so a dropped frame must not touch what is kept */
     GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS) | BIT(GROUP) | BIT(PLACED) |
-               BIT(ILLUMINANCE) | BIT(INFLUENTIAL),
+               BIT(ILLUMINANCE) | BIT(INFLUENTIAL) | BIT(EXPECTED),
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
     /* what is seen: emitters too */
     SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT) | BIT(MOTION),
-    EMITTERS = NOC_AOV_BITS_EMITTERS,                              /* kept[INFLUENTIAL] */
-    SUMS = BIT(GROUP) | BIT(PLACED) | BIT(ILLUMINANCE) | EMITTERS, /* over frames: view_sources.c */
+    EMITTERS = NOC_AOV_BITS_EMITTERS,                   /* kept[INFLUENTIAL] */
+    MEANS = BIT(ILLUMINANCE) | BIT(EXPECTED),           /* kept: the mean, and of how many frames */
+    SUMS = BIT(GROUP) | BIT(PLACED) | MEANS | EMITTERS, /* over frames: view_sources.c */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
     /* those that are blank where there is no surface to light */
     OF_LIT = ~(BIT(RAYS) | BIT(LUMINANCE) | MOMENTS | SURFACES | SUMS),
@@ -40,8 +41,9 @@ static size_t kept_entries(int aov) {
     case NOC_AOV_INFLUENTIAL_SHARE:
     case NOC_AOV_RUNNER_UP:
     case NOC_AOV_RUNNER_UP_SHARE: return 0;
-    case NOC_AOV_LUMINANCE: return 0;   /* the picture has it */
-    case NOC_AOV_ILLUMINANCE: return 2; /* mean, frames */
+    case NOC_AOV_LUMINANCE: return 0; /* the picture has it */
+    case NOC_AOV_ILLUMINANCE:
+    case NOC_AOV_EXPECTED: return 2; /* mean, frames */
     default: return NOC_MAX(noc_views_made_entries(aov), (size_t)noc_aov_components((noc_aov)aov));
     }
 }
@@ -250,8 +252,8 @@ static double moments_view(const noc_views *v, const noc_frame_blocks *b, noc_ao
 static double number_of(const noc_views *v, const noc_frame_blocks *b, noc_aov aov, size_t at, int l) {
     if (aov == NOC_AOV_LUMINANCE)
         return luminance_of(&b->picture[at], l);
-    if (aov == NOC_AOV_ILLUMINANCE)
-        return noc_views_lux(v, at, l);
+    if (MEANS >> aov & 1)
+        return noc_views_mean(v, aov, at, l);
     if ((BIT(GROUP) | BIT(PLACED) | EMITTERS) >> aov & 1)
         return noc_views_source(v, aov, at, l);
     return MOMENTS >> aov & 1 ? moments_view(v, b, aov, at, l) : v->kept[aov][at][l];

@@ -66,7 +66,7 @@ void noc_views_keep(noc_views *v, const noc_frame_blocks *b, const noc_frame *fr
 bool noc_views_read(const noc_views *v, const noc_frame_blocks *b, noc_aov aov, float *value);
 void noc_views_free(noc_views *v);
 
-/* view_rows.c: as noc_backend.rows; the frame kept its motion. */
+/* view_rows.c: as noc_backend.rows. */
 void noc_views_rows(const noc_views *v, const noc_frame_blocks *b, const frame_camera *camera,
                     const noc_frame_rows *rows);
 
@@ -88,7 +88,8 @@ void noc_views_find_light_colours(noc_views *v, const noc_scene *scene);
 noc_status noc_views_label_emitters(noc_views *v, const noc_scene *scene, noc_log *log);
 /* The frame is complete; fresh: bits of views whose sums begin with it. */
 void noc_views_keep_sources(noc_views *v, size_t block, uint32_t fresh);
-float noc_views_lux(const noc_views *v, size_t block, int lane); /* -1: no frame saw a surface */
+/* NOC_AOV_ILLUMINANCE, NOC_AOV_EXPECTED; -1: no frame saw a surface. */
+float noc_views_mean(const noc_views *v, noc_aov aov, size_t block, int lane);
 /* One of the views of where light comes from; -1: there is none. */
 float noc_views_source(const noc_views *v, noc_aov aov, size_t block, int lane);
 

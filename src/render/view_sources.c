@@ -113,9 +113,9 @@ void noc_views_find_light_colours(noc_views *v, const noc_scene *scene) {
     v->light_colours &= ~1u; /* dark ones */
 }
 
-static void keep_lux(noc_views *v, size_t block, bool fresh) {
-    const float *from = v->made[NOC_AOV_ILLUMINANCE][block];
-    float *mean = v->kept[NOC_AOV_ILLUMINANCE][2 * block], *frames = v->kept[NOC_AOV_ILLUMINANCE][2 * block + 1];
+static void keep_mean(noc_views *v, noc_aov aov, size_t block, bool fresh) {
+    const float *from = v->made[aov][block];
+    float *mean = v->kept[aov][2 * block], *frames = v->kept[aov][2 * block + 1];
     for (int l = 0; l < BLOCK; l++) {
         if (fresh)
             mean[l] = frames[l] = 0;
@@ -139,8 +139,10 @@ static void add_sources(float (*from)[BLOCK], float (*to)[BLOCK], size_t slots, 
 }
 
 void noc_views_keep_sources(noc_views *v, size_t block, uint32_t fresh) {
-    if (v->asked >> NOC_AOV_ILLUMINANCE & 1)
-        keep_lux(v, block, fresh >> NOC_AOV_ILLUMINANCE & 1);
+    static const noc_aov means[] = { NOC_AOV_ILLUMINANCE, NOC_AOV_EXPECTED };
+    for (size_t k = 0; k < NOC_COUNT(means); k++)
+        if (v->asked >> means[k] & 1)
+            keep_mean(v, means[k], block, fresh >> means[k] & 1);
     for (size_t k = 0; k < NOC_COUNT(sources); k++) {
         noc_aov aov = sources[k];
         size_t entries = noc_source_entries(aov);
@@ -176,8 +178,8 @@ static float emitter_view(const noc_views *v, noc_aov aov, size_t block, int l) 
     return share ? (float)(place[(int)EMITTER_SLOTS + at][l] / all) : place[at][l];
 }
 
-float noc_views_lux(const noc_views *v, size_t block, int l) {
-    float(*kept)[BLOCK] = v->kept[NOC_AOV_ILLUMINANCE];
+float noc_views_mean(const noc_views *v, noc_aov aov, size_t block, int l) {
+    float(*kept)[BLOCK] = v->kept[aov];
     return kept[2 * block + 1][l] > 0 ? kept[2 * block][l] : -1;
 }
 

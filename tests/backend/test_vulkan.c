@@ -221,7 +221,8 @@ static void cars_have_the_same_bits(void **state) {
 enum {
     OF_RESERVOIRS = AOV(DENSITY) | AOV(LIGHT) | AOV(WEIGHT) | AOV(CONFIDENCE),
     OF_SURFACES = AOV(DEPTH) | AOV(NORMAL) | AOV(CLASS) | AOV(OBJECT) | AOV(MOTION),
-    ALL_VIEWS = ((1u << NOC_AOV_COUNT) - 1) & ~AOV(LIGHTS), /* which lists and influence have */
+    OF_LISTS = AOV(LIGHTS) | AOV(EXPECTED), /* the first of influence, too */
+    ALL_VIEWS = ((1u << NOC_AOV_COUNT) - 1) & ~OF_LISTS,
 };
 
 /* Rows of the last frame, a plane after the other. */
@@ -284,8 +285,8 @@ static void views_have_the_same_bits(void **state) {
         p.candidates = rows[row].candidates;
         p.rays = 20;
         p.final_ray = !strstr(rows[row].name, "no rays");
-        bool finds = p.candidates == NOC_CANDIDATES_LISTS || p.candidates == NOC_CANDIDATES_INFLUENCE;
-        p.aovs = (ALL_VIEWS & ~rows[row].without) | (finds ? AOV(LIGHTS) : 0);
+        bool lists = p.candidates == NOC_CANDIDATES_LISTS, finds = lists || p.candidates == NOC_CANDIDATES_INFLUENCE;
+        p.aovs = (ALL_VIEWS | (lists ? OF_LISTS : finds ? AOV(LIGHTS) : 0)) & ~rows[row].without;
         for (int f = 0; f < 4; f++) {
             noc_instance in = { 1, { 1.5, 0, 0, -4 + 0.4 * (f / 2), 0, 1.5, 0, -4, 0, 0, 1.5, 0 } };
             if (f == 2)

@@ -120,8 +120,8 @@ static void has_views_of_surfaces_and_none_of_lights(void **state) {
     noc_scene *s = yard(5);
     noc_view *view = own_view(s, 1, NULL);
     noc_camera c = look(0, -8, 3, 0, 5, 3, 60);
-    const noc_aov none[] = { NOC_AOV_LIGHTS,     NOC_AOV_DENSITY, NOC_AOV_LIGHT,  NOC_AOV_WEIGHT,
-                             NOC_AOV_CONFIDENCE, NOC_AOV_GROUP,   NOC_AOV_PLACED, NOC_AOV_ILLUMINANCE },
+    const noc_aov none[] = { NOC_AOV_LIGHTS, NOC_AOV_DENSITY, NOC_AOV_LIGHT,       NOC_AOV_WEIGHT,  NOC_AOV_CONFIDENCE,
+                             NOC_AOV_GROUP,  NOC_AOV_PLACED,  NOC_AOV_ILLUMINANCE, NOC_AOV_EXPECTED },
                   some[] = { NOC_AOV_DEPTH, NOC_AOV_NORMAL, NOC_AOV_CLASS, NOC_AOV_OBJECT };
     noc_render_params p = headlight();
     for (size_t i = 0; i < NOC_COUNT(none); i++) {

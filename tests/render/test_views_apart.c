@@ -18,6 +18,8 @@ static noc_render_params any(int i) {
     p.tail = 5;
     if (p.method == NOC_METHOD_IS || p.method == NOC_METHOD_REFERENCE || i % 4 > 1)
         p.aovs &= ~(1u << NOC_AOV_LIGHTS);
+    if (p.method == NOC_METHOD_IS || p.candidates != NOC_CANDIDATES_LISTS)
+        p.aovs &= ~(1u << NOC_AOV_EXPECTED);
     if (p.method == NOC_METHOD_REFERENCE)
         p.aovs &= 1u << NOC_AOV_RAYS | MOMENTS | 1u << NOC_AOV_GROUP | 1u << NOC_AOV_PLACED | 1u << NOC_AOV_LUMINANCE |
                   1u << NOC_AOV_ILLUMINANCE | 15u << NOC_AOV_INFLUENTIAL;
@@ -117,6 +119,8 @@ static void wrong_requests(void **state) {
         { NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
         { NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
         { NOC_METHOD_IS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
+        { NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_EXPECTED, "\"expected\": only" },
+        { NOC_METHOD_REFERENCE, NOC_CANDIDATES_LISTS, 1u << NOC_AOV_EXPECTED, "\"expected\": only" },
         { NOC_METHOD_REFERENCE, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_DENSITY, "\"density\": the reference" },
         { NOC_METHOD_REFERENCE, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_WEIGHT, "\"weight\": the reference" },
         { NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_COUNT, "aovs is 0x" },

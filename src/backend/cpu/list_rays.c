@@ -86,6 +86,12 @@ static void show_candidates(const stage_run *run, worker *w, int n, int first) {
     noc_cpu_note_candidates(run, w, n, t->at[n], t->lanes[n], &shown);
 }
 
+static void show_expected(const stage_run *run, const tile_rays *t, int n) {
+    float(*expected)[BLOCK] = run->s->b.views.made[NOC_AOV_EXPECTED];
+    for (uint32_t bits = expected ? t->lanes[n] : 0; bits; bits &= bits - 1)
+        expected[t->at[n]][__builtin_ctz(bits)] = t->asked.bright[__builtin_ctz(bits)];
+}
+
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points) {
     struct core_context ctx = run->ctx;
     tile_rays *t = &w->lists->rays;
@@ -108,7 +114,8 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
         run->k->list_share(&ctx, points->g[n], t->lanes[n], at.x, at.y, brightness, &t->cell[t->cell_of[n]].priors,
                            &t->asked);
         memcpy(t->n[n], t->asked.n, sizeof(t->n[n]));
-        if (learns)
+        show_expected(run, t, n);
+        if (learns) /* which adds them up in their place */
             run->s->block_bright[at.at] = noc_cpu_sum_in_halves(t->asked.bright, BLOCK);
         for (int k = 0; k < t->asked.most; k++)
             add_rays(run, t, &ctx, n, k, at.x, at.y);

@@ -139,6 +139,7 @@ static vk_binding common_binding(const vk_view *v, const noc_frame *frame) {
         .view_lux = v->views.gathered[NOC_AOV_ILLUMINANCE].address,
         .view_group = v->views.gathered[NOC_AOV_GROUP].address,
         .view_placed = v->views.gathered[NOC_AOV_PLACED].address,
+        .view_expected = v->views.gathered[NOC_AOV_EXPECTED].address,
         .view_emitters = v->views.gathered[NOC_AOV_INFLUENTIAL].address,
         .emitter_labels = v->views.labels.address,
         .view_triangles = v->views.triangles.address,

@@ -6,10 +6,10 @@
 static const struct {
     noc_aov aov;
     uint32_t bit;
-} gathered[] = { { NOC_AOV_LIGHTS, VK_VIEW_LIGHTS },       { NOC_AOV_RAYS, VK_VIEW_RAYS },
-                 { NOC_AOV_DENSITY, VK_VIEW_DENSITY },     { NOC_AOV_ILLUMINANCE, VK_VIEW_LUX },
-                 { NOC_AOV_GROUP, VK_VIEW_GROUP },         { NOC_AOV_PLACED, VK_VIEW_PLACED },
-                 { NOC_AOV_INFLUENTIAL, VK_VIEW_EMITTERS } };
+} gathered[] = { { NOC_AOV_LIGHTS, VK_VIEW_LIGHTS },        { NOC_AOV_RAYS, VK_VIEW_RAYS },
+                 { NOC_AOV_DENSITY, VK_VIEW_DENSITY },      { NOC_AOV_ILLUMINANCE, VK_VIEW_LUX },
+                 { NOC_AOV_GROUP, VK_VIEW_GROUP },          { NOC_AOV_PLACED, VK_VIEW_PLACED },
+                 { NOC_AOV_INFLUENTIAL, VK_VIEW_EMITTERS }, { NOC_AOV_EXPECTED, VK_VIEW_EXPECTED } };
 
 static bool needs_triangles(uint32_t aovs) { return aovs & (NOC_AOV_BIT(OBJECT) | NOC_AOV_BIT(CLASS)); }
 

@@ -88,6 +88,7 @@ struct vk_pane_record {
     ADDRESS(Floats, view_lux)                                                                                          \
     ADDRESS(Floats, view_group)                                                                                        \
     ADDRESS(Floats, view_placed)                                                                                       \
+    ADDRESS(Floats, view_expected)                                                                                     \
     ADDRESS(Floats, view_emitters)                                                                                     \
     ADDRESS(Floats, emitter_labels) /* of each light */                                                                \
     ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
@@ -135,6 +136,7 @@ struct vk_pane_record {
 #define VK_VIEW_EMITTERS 32u
 #define VK_VIEW_TRIANGLES 64u
 #define VK_VIEW_LIGHTS 128u
+#define VK_VIEW_EXPECTED 256u
 #define VK_NO_TRIANGLE 0xffffffffu
 
 #define VK_ANSWER_NONE 0u   /* of a ray: there is none */

@@ -25,23 +25,12 @@ static uint32_t set_bit(int set) { return R(SET) << set; }
 static bool gathers(vk_shader shader) {
     static const bool yes[VK_SHADER_COUNT] = {
 #define YES(name) [VK_SHADER_##name] = true
-        YES(primary_use),
-        YES(place),
-        YES(candidates_shared),
-        YES(candidates_tree),
-        YES(resolve_ask),
-        YES(temporal_ask),
-        YES(spatial_ask),
-        YES(emitters),
-        YES(shade_use),
-        YES(reference_ask),
-        YES(reference_use),
-        YES(sky_ask),
-        YES(sky_use),
-        YES(list_ask),
-        YES(list_note),
-        YES(list_sources),
-        YES(influence_candidates),
+        YES(primary_use),     YES(place),         YES(candidates_shared),
+        YES(candidates_tree), YES(resolve_ask),   YES(temporal_ask),
+        YES(spatial_ask),     YES(emitters),      YES(shade_use),
+        YES(reference_ask),   YES(reference_use), YES(sky_ask),
+        YES(sky_use),         YES(list_ask),      YES(list_note),
+        YES(list_share),      YES(list_sources),  YES(influence_candidates),
 #undef YES
     };
     return yes[shader];

@@ -144,6 +144,8 @@ float share_pixel(place p, surf s, face_sums far, uint near, uint rows) {
     pixel_store(PIXEL_ALL, q.sums.all);
     pixel_store(PIXEL_DRAWS, q.draws);
     pixel_store(PIXEL_COUNT, q.rays);
+    if ((HERE.views & VK_VIEW_EXPECTED) != 0u)
+        HERE.view_expected.at[p.slot] = q.sums.bright;
     return q.sums.bright;
 }
 
