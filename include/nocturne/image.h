@@ -26,6 +26,9 @@ typedef struct noc_image {
     /* it is for display alone (nocturne/smooth.h): files say so, under "smoothed", noc_image_read reads it from there,
      * and no figures are made of it */
     bool smoothed;
+    /* of a smoothed still: its noise as estimated, relative to its light; else 0. Files say it, nothing reads it back
+     */
+    double smoothed_error;
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */

@@ -64,8 +64,9 @@ NOC_API const noc_option *noc_device_options(void);    /* fields of noc_device_p
 /* Row of an option "preset", for tables of one's own: field preset, an int that is a noc_preset, of struct S. */
 #define NOC_OPTION_PRESET(S, group)                                                                                    \
     {                                                                                                                  \
-        "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "",                        \
-            "still: lists of 64 + 128 lights; interactive: 32 + 64, a tenth quicker; options beside it win"            \
+        "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive|quick", "",                  \
+            "still: lists of 64 + 128 lights; interactive: 32 + 64, a tenth quicker; quick: half of the rays, and "    \
+            "of a still two frames, smoothed; options beside it win"                                                   \
     }
 
 /* Sets one field from text (TEXTS: adds to it). value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the

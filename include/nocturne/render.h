@@ -189,9 +189,10 @@ NOC_API const char *noc_sky_read(const char *text, double *luminance);
 
 /* Settings for a purpose, chosen by measurement (docs/measurements.md, "Presets"). */
 typedef enum noc_preset {
-    NOC_PRESET_STILL,      /* the defaults: ris over lists of 64 + 128, 8 rays. Least error after a minute */
-    NOC_PRESET_INTERACTIVE /* the same over lists of 32 + 64: frames take about a tenth less time, and are noisier. For
-                              first pictures and a camera that is moved by hand */
+    NOC_PRESET_STILL,       /* the defaults: ris over lists of 64 + 128, 8 rays. Least error after a minute */
+    NOC_PRESET_INTERACTIVE, /* the same over lists of 32 + 64: frames take about a tenth less time, and are noisier. For
+                               first pictures and a camera that is moved by hand */
+    NOC_PRESET_QUICK        /* as still, 4 rays: for a picture of few frames that is smoothed (nocturne/smooth.h) */
 } noc_preset;
 
 /* Sets all that says how light is estimated and reused; the picture's size, seed, sky and the like stay as they are. */

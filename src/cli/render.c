@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define A render_args
+#define QUICK_FRAMES 2
 #define TEXT(n, g, f, u, h)                                                                                            \
     { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
 static const noc_option own_options[] = {
@@ -15,7 +16,7 @@ static const noc_option own_options[] = {
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
       "frames that are rendered and averaged; pictures of an animation" },
     { "smooth", "Output", NOC_OPTION_BOOL, offsetof(A, smooth), 0, 1, NULL, "",
-      "without noise, for the eye: for display alone" },
+      "with less noise, for the eye: for display alone" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about so long instead; 0 = no limit" },
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
@@ -132,6 +133,16 @@ static int check_influence(const render_args *args) {
     return cli_check_output(&cli_render, args->influence_obj, CLI_OBJ, &args->common);
 }
 
+/* Of a still the preset quick is few frames, smoothed. */
+static void use_quick(render_args *args) {
+    if (args->preset != NOC_PRESET_QUICK || args->animation.on)
+        return;
+    if (!cli_given(&args->common, "frames"))
+        args->frames = QUICK_FRAMES;
+    args->smooth =
+        args->smooth || !(cli_given(&args->common, "smooth") || args->show || !noc_still_aovs(&args->render));
+}
+
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
@@ -146,10 +157,13 @@ static int check(render_job *job) {
     status = cli_check_city(args);
     status = status ? status : parse_size(args);
     status = status ? status : cli_parse_show(args);
+    use_quick(args);
     if (!status && args->smooth && args->show)
         status = cli_usage(&cli_render, "--smooth and --show exclude each other: views are not smoothed");
+    if (!status && args->smooth && !args->animation.on && !noc_still_aovs(&args->render))
+        status = cli_usage(&cli_render, "--smooth and --method headlight exclude each other: it has no noise");
     if (args->smooth)
-        args->render.aovs |= NOC_SMOOTH_AOVS;
+        args->render.aovs |= args->animation.on ? NOC_SMOOTH_AOVS : noc_still_aovs(&args->render);
     status = status ? status : cli_check_animation(args);
     if (!status && !args->animation.on)
         status = cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
@@ -215,7 +229,6 @@ static noc_status render_frames(render_job *job) {
         if (args->time > 0 && job->frames && spent + 0.5 * job->frame_seconds / job->frames > args->time)
             break;
         status = noc_view_render(job->view, &job->camera, &args->render, &progress);
-        status = status ? status : cli_smooth(job);
         if (!status)
             cli_add_stats(job);
     }
@@ -247,9 +260,10 @@ noc_status cli_start_view(render_job *job) {
     cli_nothing_to_keep(true); /* until a frame is complete */
     job->device = noc_device_create(&job->args->device, job->log);
     job->view = job->device ? noc_view_create(job->device, job->scene) : NULL;
-    if (job->view && job->args->smooth)
+    bool moves = job->args->smooth && job->args->animation.on;
+    if (job->view && moves)
         job->smoother = noc_smoother_create(job->device);
-    return job->view && (job->smoother || !job->args->smooth) ? NOC_OK : NOC_ERR_MEMORY;
+    return job->view && (job->smoother || !moves) ? NOC_OK : NOC_ERR_MEMORY;
 }
 
 noc_status cli_smooth(render_job *job) {
@@ -327,6 +341,9 @@ static int draw(render_job *job) {
     if (failed && !job->frames)
         return CLI_FAILURE;
     job->file = args->output;
+    job->still = args->smooth && !failed && !cli_interrupted();
+    if (args->smooth && !job->still)
+        cli_error("warning: the picture is not smoothed: its frames were broken off");
     if (save(job, &failed))
         return CLI_FAILURE;
     int ending = failed ? CLI_FAILURE : cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;

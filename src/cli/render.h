@@ -47,8 +47,9 @@ typedef struct render_job {
     noc_scene *scene;
     noc_device *device;
     noc_view *view;
-    noc_smoother *smoother;    /* NULL: without --smooth */
+    noc_smoother *smoother;    /* of an animation; NULL: without --smooth */
     const noc_image *smoothed; /* of the last frame; the smoother's */
+    bool still;                /* the picture of all frames is smoothed when it is written */
     noc_image *image;
     uint32_t *label_numbers; /* of labels; NULL: 0, 1, ... */
     noc_channel *shown;      /* --show */

@@ -206,7 +206,7 @@ noc_status cli_write_picture(render_job *job) {
     free(job->room);
     job->room = NULL;
     noc_image_destroy(job->image); /* of an animation's picture before */
-    job->image = noc_view_image(job->view);
+    job->image = job->still ? noc_view_smoothed(job->view) : noc_view_image(job->view);
     if (!job->image)
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };

@@ -85,6 +85,8 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
     }
     if (image->smoothed)
         meta_add(&list, "smoothed", "for display");
+    if (image->smoothed && image->smoothed_error > 0)
+        meta_add(&list, "smoothed-error", "%.2g", image->smoothed_error);
     noc_status status = meta_add_all(&list, meta, path, log);
     if (status == NOC_OK) {
         warn_non_finite(image, path, log);

@@ -43,13 +43,14 @@ typedef struct noc_sight {
     uint32_t light;   /* that it leads to: any number will do, equal ones are traced together */
 } noc_sight;
 
-/* The last complete frame alone, and what it saw: planes of the picture's width * height numbers, rows from the top. */
+/* The last complete frame alone, and what it saw: planes of the picture's width * height numbers, rows from the top.
+ * Vectors may be NULL; of those that are not, rgb and motion need a frame that kept NOC_AOV_MOTION. */
 typedef struct noc_frame_rows {
     float *rgb[3];
     float *reflects[3]; /* of a surface: albedo and what gloss mirrors at least; light over it has no texture */
     float *normal[3];   /* unit; 0: there is no surface */
     float *depth;       /* along the view, m; 0: there is no surface */
-    float *motion[3];   /* as NOC_AOV_MOTION, which the frame must have kept */
+    float *motion[3];   /* as NOC_AOV_MOTION */
     uint32_t *what;     /* a noc_row_kind, NOC_ROW_ALPHA, and between them what instance and material come to */
 } noc_frame_rows;
 
@@ -154,6 +155,8 @@ void noc_describe_hit(const noc_scene *scene, const noc_ray *ray, const noc_met 
 /* What auto stands for here, or the level asked for; reports one that is unknown or not of this processor, from the
  * environment too, and leaves *chosen as it is. */
 noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log);
+/* The one of kernels over rows, where a frame has run with it. */
+noc_isa noc_rows_isa(noc_isa asked);
 
 /* aov.c */
 /* Can these views be had of these parameters? What cannot is reported. */

@@ -63,3 +63,8 @@ noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log) {
         --*chosen;
     return NOC_OK;
 }
+
+noc_isa noc_rows_isa(noc_isa asked) {
+    noc_isa isa = NOC_ISA_BASELINE;
+    return noc_choose_isa(asked, &isa, NULL) ? NOC_ISA_BASELINE : isa;
+}

@@ -11,7 +11,7 @@ void noc_render_use_preset(noc_render_params *p, noc_preset preset) {
     p->candidates = d.candidates;
     p->list = interactive ? 32 : d.list;
     p->tail = interactive ? 64 : d.tail;
-    p->shadow_rays = d.shadow_rays;
+    p->shadow_rays = preset == NOC_PRESET_QUICK ? 4 : d.shadow_rays;
     p->learn = d.learn;
     p->temporal = d.temporal;
     p->spatial = d.spatial;

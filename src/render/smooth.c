@@ -121,15 +121,14 @@ static smooth_step make_step(noc_smoother *s, const noc_view *view, const noc_sm
 }
 
 static const smooth_rows *rows_of(noc_isa asked) {
-    noc_isa isa = NOC_ISA_BASELINE;
-    if (noc_choose_isa(asked, &isa, NULL))
-        isa = NOC_ISA_BASELINE;
+    noc_isa isa = noc_rows_isa(asked);
 #if defined(__x86_64__)
     if (isa == NOC_ISA_AVX512)
         return &noc_smooth_rows_avx512;
     if (isa == NOC_ISA_AVX2)
         return &noc_smooth_rows_avx2;
 #endif
+    (void)isa;
     return &noc_smooth_rows_baseline;
 }
 

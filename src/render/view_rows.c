@@ -30,6 +30,8 @@ static uint32_t surface_of(const noc_scene *scene, const gblock *g, int l, uint3
 }
 
 static void store(float *const to[3], size_t i, v3 v) {
+    if (!to[0])
+        return;
     to[0][i] = v.x;
     to[1][i] = v.y;
     to[2][i] = v.z;
@@ -40,11 +42,13 @@ static void pixel(const struct rows_run *run, size_t at, int l, size_t to) {
     const noc_frame_rows *out = run->rows;
     const gblock *g = &b->g[at];
     const cblock *c = &b->colour[at];
-    float(*motion)[BLOCK] = &run->v->kept[NOC_AOV_MOTION][3 * at];
     bool some = g->material[l] != NO_SURFACE;
     const float *eye = run->from->eye, *sight = run->from->forward;
     store(out->rgb, to, V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l]));
-    store(out->motion, to, V3(motion[0][l], motion[1][l], motion[2][l]));
+    if (out->motion[0]) {
+        float(*motion)[BLOCK] = &run->v->kept[NOC_AOV_MOTION][3 * at];
+        store(out->motion, to, V3(motion[0][l], motion[1][l], motion[2][l]));
+    }
     store(out->normal, to, some ? V3(g->nx[l], g->ny[l], g->nz[l]) : V3(0, 0, 0));
     store(out->reflects, to, some ? reflects(b->scene, g, l) : V3(1, 1, 1));
     out->depth[to] =

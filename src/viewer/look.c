@@ -89,7 +89,7 @@ look look_default(const viewer_source *source) {
                .smooth = true,
                .frames = FRAMES };
     int fewest = -1;
-    for (int preset = NOC_PRESET_STILL; preset <= NOC_PRESET_INTERACTIVE; preset++) {
+    for (int preset = NOC_PRESET_STILL; preset <= NOC_PRESET_QUICK; preset++) {
         noc_render_params p = source->render;
         noc_render_use_preset(&p, (noc_preset)preset);
         int count = differences(&p, &source->render);

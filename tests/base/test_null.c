@@ -361,6 +361,8 @@ static noc_camera camera;
     P(noc_smoother_destroy(NULL), true)                                                                                \
     P(0, noc_smoother_step(NULL, NULL, NULL) == NULL)                                                                  \
     P(noc_smoother_reset(NULL), true)                                                                                  \
+    P(0, noc_still_aovs(NULL) != 0)                                                                                    \
+    P(0, noc_view_smoothed(NULL) == NULL)                                                                              \
     P(noc_ranking_destroy(NULL), true)                                                                                 \
     P(0, noc_ranking_refine(NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
     P(0, noc_ranking_get(NULL, NULL, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
