@@ -17,12 +17,13 @@ spec preset.json '{ "name": "*", "preset": "*" }, { "name": "own", "shadow-rays"
 spec spelled.json '{ "name": "still", "method": "ris", "candidates": "lists", "list": 64, "tail": 128,
     "shadow-rays": 8 },
     { "name": "interactive", "method": "ris", "candidates": "lists", "list": 32, "tail": 64, "shadow-rays": 8 },
+    { "name": "quick", "method": "ris", "candidates": "lists", "list": 64, "tail": 128, "shadow-rays": 4 },
     { "name": "own", "method": "ris", "candidates": "lists", "list": 32, "tail": 64, "shadow-rays": 2 }'
 run experiment preset.json -o p --cache cache
-test $status = 0 && grep -q ': 6 rows, 6 of them made now' out
+test $status = 0 && grep -q ': 8 rows, 8 of them made now' out
 result $? "\"preset\": \"*\" is a configuration of each preset"
 run experiment spelled.json -o p --cache cache
-test $status = 0 && grep -q ': 6 rows, 0 of them made now' out
+test $status = 0 && grep -q ': 8 rows, 0 of them made now' out
 result $? "a preset is the options that it stands for; those beside it win, wherever it stands"
 spec shared.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "preset": "still" }' \
     '"options": { "tail": 48, "preset": "interactive" },'
