@@ -116,10 +116,10 @@ NOC_API noc_status noc_region_add(noc_region *region, const noc_patch *patches, 
 NOC_API void noc_region_leave_out(noc_region *region, size_t count);
 
 /* Adds all triangles of the object of that id that are of these classes (1u << noc_class each; 0: all but closures and
- * ground surfaces), as they face outwards, by their area. What lies on the ground faces up. Panes of its windows
- * within 0.6 m before a wall are a part of the wall: the wall behind them counts at their face, or, where windows are
- * among the classes, not at all, for the panes count themselves. NOC_ERR_ARGUMENT without a word where there is no such
- * object, and after reporting it where it has no such surface, or more than 4,000,000 pieces. */
+ * ground surfaces), as they face outwards, by their area. What lies on the ground faces up. Panes up to 0.6 m in front
+ * of a wall do not shadow it: the wall behind a pane is sampled at the pane's face. If windows are among the classes,
+ * the pane is added instead of that part of the wall. NOC_ERR_ARGUMENT is returned without a message if there is no
+ * such object, and after reporting it if the object has no such surface or is cut into more than 4,000,000 pieces. */
 NOC_API noc_status noc_region_add_object(noc_region *region, const noc_scene *scene, const char *id, uint32_t classes);
 /* Objects that noc_scene_object_name knows have numbers below this. */
 NOC_API size_t noc_scene_object_slots(const noc_scene *scene);

@@ -103,9 +103,9 @@ typedef enum noc_aov {
     NOC_AOV_INFLUENTIAL_SHARE,
     NOC_AOV_RUNNER_UP,
     NOC_AOV_RUNNER_UP_SHARE, /* 0 where there is a first and no second */
-    /* lists: the luminance that a pixel expects from the lights of its tile's list before any ray is sent, cd/m2: of
-     * each what it would bring unshadowed, times the share of its light that arrived around there in earlier frames
-     * (1/2 where that is not known). The mean over the frames accumulated since it was asked for */
+    /* Estimate of the pixel's luminance before any shadow ray, cd/m2: the sum over its tile's list of unshadowed
+     * luminance times the visibility learned in earlier frames (1/2 if unknown). Candidates lists alone. The mean over
+     * the frames accumulated since the view was first requested */
     NOC_AOV_EXPECTED,
     NOC_AOV_COUNT
 } noc_aov;

@@ -56,11 +56,13 @@ NOC_API void noc_smoother_reset(noc_smoother *smoother);
  * defaults. */
 NOC_API uint32_t noc_still_aovs(const noc_render_params *params);
 
+#define NOC_STILL_BYTES 88 /* a pixel */
 /* The picture of the view's frames, as noc_view_image has it, with less noise: the light of a pixel's surface is a
  * regression over the pixels around that see the same one, on what the lists of lights expect there (docs/animation.md,
- * "Smoothing"). With more frames it comes to their mean. The caller's, noc_image_destroy; 76 bytes a pixel beside it
- * while it is made. Its noise is estimated from that of the frames (noc_image.smoothed_error). NULL after reporting an
- * error: there is no frame, or one was begun and dropped since; its aovs lack noc_still_aovs; memory. */
+ * "Smoothed stills"). With more frames it comes to their mean. The caller's, noc_image_destroy; while it is made it
+ * takes NOC_STILL_BYTES a pixel beside. Its noise is estimated from that of the frames (noc_image.smoothed_error). NULL
+ * after reporting an error: there is no frame, or one was begun and dropped since; its aovs lack noc_still_aovs;
+ * memory. */
 NOC_API noc_image *noc_view_smoothed(noc_view *view);
 
 #ifdef __cplusplus

@@ -190,7 +190,8 @@ double city_floor(const noc_scene *scene) {
 #define DECK_STEP 1.5   /* m aside, where a deck goes on */
 #define DECK_LEVEL 0.5
 
-/* Is the top of a bridge at that place its deck, which goes on to two sides at a right angle, not a beam or a cable? */
+/* Returns true if the top of the bridge at foot is a deck: it continues at that height in two directions at a right
+ * angle. Beams and cables do not. */
 static bool is_deck(const noc_scene *scene, const double foot[2], double top) {
     bool on[2] = { false };
     for (int k = 0; k < 2; k++)

@@ -244,7 +244,9 @@ bool cli_is_failure(noc_status status) { return status && !(status == NOC_ERR_CA
  * not touched, so it costs addresses only. */
 static noc_status reserve(render_job *job) {
     const noc_render_params *p = &job->args->render;
-    size_t bytes = (size_t)p->width * (size_t)p->height * (job->args->show ? 32 : 20) + ((size_t)8 << 20);
+    bool still = job->args->smooth && !job->args->animation.on;
+    size_t pixel = job->args->show ? 32 : still ? 20 + NOC_STILL_BYTES : 20;
+    size_t bytes = (size_t)p->width * (size_t)p->height * pixel + ((size_t)8 << 20);
     job->room = malloc(bytes);
     if (job->room)
         return NOC_OK;

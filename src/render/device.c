@@ -76,3 +76,23 @@ void noc_world_leave(noc_device *d, noc_world *world) {
     }
     pthread_mutex_unlock(&d->lock);
 }
+
+/* ---- rows ---- */
+
+enum { BAND = 8 };
+typedef struct band_run {
+    int rows;
+    void (*row)(const void *ctx, int y);
+    const void *ctx;
+} band_run;
+
+static void run_band(void *arg, size_t band, int index) {
+    const band_run *run = arg;
+    (void)index;
+    for (int y = (int)band * BAND; y < NOC_MIN((int)(band + 1) * BAND, run->rows); y++)
+        run->row(run->ctx, y);
+}
+
+void noc_device_rows(const noc_device *d, int rows, void (*row)(const void *ctx, int y), const void *ctx) {
+    d->backend->run(d->state, ((size_t)rows + BAND - 1) / BAND, run_band, &(band_run){ rows, row, ctx });
+}

@@ -26,4 +26,8 @@ struct noc_device {
 noc_world *noc_world_enter(noc_device *device, const noc_scene *scene);
 void noc_world_leave(noc_device *device, noc_world *world);
 
+/* Calls row(ctx, y) for each y below `rows` by the device's threads, several rows at a time, so that threads seldom
+ * meet. */
+void noc_device_rows(const noc_device *device, int rows, void (*row)(const void *ctx, int y), const void *ctx);
+
 #endif

@@ -132,25 +132,20 @@ static const smooth_rows *rows_of(noc_isa asked) {
     return &noc_smooth_rows_baseline;
 }
 
-/* Rows are done in bands, so that threads do not meet at each. */
-enum { BAND = 8 };
-typedef struct band_run {
+typedef struct row_run {
     const smooth_step *step;
     void (*kernels[2])(const smooth_step *s, int y); /* the second one may be NULL */
-} band_run;
+} row_run;
 
-static void run_band(void *arg, size_t band, int index) {
-    const band_run *run = arg;
-    (void)index;
-    int end = NOC_MIN((int)(band + 1) * BAND, run->step->now.height);
-    for (int y = (int)band * BAND; y < end; y++)
-        for (int i = 0; i < 2 && run->kernels[i]; i++)
-            run->kernels[i](run->step, y);
+static void run_row(const void *ctx, int y) {
+    const row_run *run = ctx;
+    for (int i = 0; i < 2 && run->kernels[i]; i++)
+        run->kernels[i](run->step, y);
 }
 
-static void run_rows(const noc_smoother *s, const smooth_step *step, band_run run) {
+static void run_rows(const noc_smoother *s, const smooth_step *step, row_run run) {
     run.step = step;
-    s->device->backend->run(s->device->state, ((size_t)step->now.height + BAND - 1) / BAND, run_band, &run);
+    noc_device_rows(s->device, step->now.height, run_row, &run);
 }
 
 static noc_status check(const noc_smoother *s, const noc_view *view, const noc_smooth_params *p) {
@@ -190,12 +185,12 @@ static void smooth(noc_smoother *s, noc_view *view, const noc_smooth_params *par
     smooth_step step = make_step(s, view, params);
     const smooth_rows *rows = rows_of(view->last.isa);
     noc_view_rows(view, &step.rows);
-    run_rows(s, &step, (band_run){ .kernels = { rows->shape, rows->gather } });
-    run_rows(s, &step, (band_run){ .kernels = { rows->settle } });
+    run_rows(s, &step, (row_run){ .kernels = { rows->shape, rows->gather } });
+    run_rows(s, &step, (row_run){ .kernels = { rows->settle } });
     for (; step.pass < params->passes; step.pass++)
-        run_rows(s, &step, (band_run){ .kernels = { rows->filter } });
-    run_rows(s, &step, (band_run){ .kernels = { rows->make } });
-    run_rows(s, &step, (band_run){ .kernels = { rows->show } });
+        run_rows(s, &step, (row_run){ .kernels = { rows->filter } });
+    run_rows(s, &step, (row_run){ .kernels = { rows->make } });
+    run_rows(s, &step, (row_run){ .kernels = { rows->show } });
     mark_emitters(s->image, step.now.what);
     s->image->smoothed = true;
     s->last = 1 - s->last;

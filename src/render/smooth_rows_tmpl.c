@@ -11,20 +11,18 @@
  *   noise, light has changed, and both begin anew. So a lamp that is switched, or a car's light that passes, leaves a
  *   ghost of a few frames, and what rests keeps its long mean.
  * - Weights are Tukey's biweight of the distance in standard errors, which ends: a converged picture is not blurred. */
+#include "render/rows.h"
 #include "render/smooth.h"
 
 #include <math.h>
 
-#define PLANE_TOLERANCE 0.02f /* of the depth */
-#define NORMAL_SHARPNESS 6.f  /* weights are 0 from 1 - 1/6 in cosine on: 34 degrees */
-#define ALIKE 0.9f            /* cosine between the normals of a surface now and then */
-#define REACH 16.f            /* (standard errors)^2 of luminance at which weights are 0 */
-#define RESTING 8.f      /* still frames after which REACH is half: the mean over frames takes the filter's place */
-#define CHANGE_SURE 9.f  /* (standard errors)^2 of a window's light from which on it has changed, */
-#define CHANGE_MAYBE 3.f /* and under which it has not: neighbours share noise, so 3 is little */
-#define CHANGE_SEEN 0.1f /* share of the light that is a standard error at least: smaller changes may be late */
-#define CHANGE_MOST 3.f  /* standard errors that a pixel counts for at most */
-#define MOST_LIGHT 1e30f
+#define ALIKE 0.9f          /* cosine between the normals of a surface now and then */
+#define REACH 16.f          /* (standard errors)^2 of luminance at which weights are 0 */
+#define RESTING 8.f         /* still frames after which REACH is half: the mean over frames takes the filter's place */
+#define CHANGE_SURE 9.f     /* (standard errors)^2 of a window's light from which on it has changed, */
+#define CHANGE_MAYBE 3.f    /* and under which it has not: neighbours share noise, so 3 is little */
+#define CHANGE_SEEN 0.1f    /* share of the light that is a standard error at least: smaller changes may be late */
+#define CHANGE_MOST 3.f     /* standard errors that a pixel counts for at most */
 #define STILL_FRAMES 1024.f /* remembered while nothing moves */
 #define GLOSS_LIGHT 0.02f   /* of the width of gloss: so far the eye turns while light is remembered, */
 #define GLOSS_SHOWN 0.3f    /* and the finished picture */
@@ -36,40 +34,21 @@
 #define NOT_ALIKE 1e30f     /* for 1 / variance */
 #define CHUNK 128           /* pixels that are filtered together */
 
-static inline float max_of(float a, float b) { return a > b ? a : b; } /* one instruction; b for NaN */
-static inline float least_of(float a, float b) { return a < b ? a : b; }
-static inline int most_int(int a, int b) { return a > b ? a : b; }
-static inline int least_int(int a, int b) { return a < b ? a : b; }
-static inline float luma(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
-static inline float green(float y, float r, float b) { return (y - 0.2126f * r - 0.0722f * b) * (1 / 0.7152f); }
-static inline noc_row_kind kind_of(uint32_t what) { return (noc_row_kind)(what & 3); }
 static inline float steps(float from, float to, float x) {
     float t = least_of(max_of((x - from) / (to - from), 0), 1);
     return t * t * (3 - 2 * t);
 }
 
-/* Along a plane 1 / depth is linear in the picture: (normal . direction of the pixel) / (normal . (plane - eye)). */
+/* Inverse depths, of emitters under 0, and slopes of surfaces. */
 static void shape(const smooth_step *s, int y) {
-    const frame_camera *c = &s->now.camera;
-    const noc_frame_rows *in = &s->rows;
-    size_t row = (size_t)y * (size_t)s->now.width;
-    float step_x = 2 / c->width, step_y = -2 / c->height, sy = 1 + step_y * ((float)y + c->jitter[1]);
+    const float *const *normal = (const float *const *)s->rows.normal;
     for (int x = 0; x < s->now.width; x++) {
-        size_t i = row + (size_t)x;
-        float sx = step_x * ((float)x + c->jitter[0]) - 1, n[3] = { 0 };
-        const float *const *normal = (const float *const *)in->normal;
-        for (int k = 0; k < 3; k++) {
-            n[0] += normal[k][i] * c->right[k];
-            n[1] += normal[k][i] * c->up[k];
-            n[2] += normal[k][i] * c->forward[k];
-        }
-        float facing = n[2] + n[0] * sx + n[1] * sy;
-        bool some = kind_of(in->what[i]) == NOC_ROW_SURFACE;
-        float inverse = in->depth[i] > 0 ? 1 / in->depth[i] : 0;
-        float across = some && facing < -1e-6f ? inverse / facing : 0;
-        s->now.inverse[i] = some ? inverse : -inverse;
-        s->now.slope_x[i] = across * n[0] * step_x;
-        s->now.slope_y[i] = across * n[1] * step_y;
+        size_t i = (size_t)y * (size_t)s->now.width + (size_t)x;
+        bool some = kind_of(s->rows.what[i]) == NOC_ROW_SURFACE;
+        row_plane plane = plane_of(&s->now.camera, normal, s->rows.depth[i], x, y, i);
+        s->now.inverse[i] = some ? plane.inverse : -plane.inverse;
+        s->now.slope_x[i] = some ? plane.slope_x : 0;
+        s->now.slope_y[i] = some ? plane.slope_y : 0;
     }
 }
 

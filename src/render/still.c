@@ -119,24 +119,18 @@ static const still_rows *rows_for(noc_isa isa) {
     return &noc_still_rows_baseline;
 }
 
-/* Rows are done in bands, so that threads do not meet at each. */
-enum { BAND = 8 };
-typedef struct band_run {
+typedef struct row_run {
     const still_step *step;
     void (*kernel)(const still_step *s, int y);
-} band_run;
+} row_run;
 
-static void run_band(void *arg, size_t band, int index) {
-    const band_run *run = arg;
-    (void)index;
-    int end = NOC_MIN((int)(band + 1) * BAND, run->step->height);
-    for (int y = (int)band * BAND; y < end; y++)
-        run->kernel(run->step, y);
+static void run_row(const void *ctx, int y) {
+    const row_run *run = ctx;
+    run->kernel(run->step, y);
 }
 
 static void run_rows(const still *s, void (*kernel)(const still_step *s, int y)) {
-    const noc_device *d = s->view->device;
-    d->backend->run(d->state, ((size_t)s->step.height + BAND - 1) / BAND, run_band, &(band_run){ &s->step, kernel });
+    noc_device_rows(s->view->device, s->step.height, run_row, &(row_run){ &s->step, kernel });
 }
 
 /* The root of the mean relative squared error of surfaces. */

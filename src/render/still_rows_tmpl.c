@@ -11,33 +11,23 @@
  *
  * Of narrow gloss diffuse light alone is fitted: what is mirrored stays as it was. A finished picture changes by
  * rays that it did not get: where many rays say otherwise than the fit, they are right. */
+#include "render/rows.h"
 #include "render/still.h"
 
 #include <math.h>
 
-#define PLANE_TOLERANCE 0.02f /* of the depth */
-#define NORMAL_SHARPNESS 6.f  /* weights are 0 from 1 - 1/6 in cosine on: 34 degrees */
-#define NARROW_FEW 12u        /* of NOC_ROW_MATTE: gloss under it mirrors what cannot be told from neighbours, */
-#define NARROW_MANY 24u       /* and where there are many rays: it has less noise than blur */
-#define FIT 5                 /* pixels: reach of the fit on each side, */
-#define BELL 2.5f             /* and the standard deviation of its bell */
-#define PILOT 3               /* pixels: reach of pilots at most */
-#define SURE 0.2f             /* relative standard error of a pilot that is good enough */
-#define ALIKE 8.f             /* sum of two pilots' variances, times this: squared distance at which weights are 0 */
-#define TRUST 4.f             /* times a pilot's own variance: more is not taken from its neighbour's */
-#define MANY_RAYS 8           /* from so many on rays can tell that a fit is wrong: */
-#define DOUBT 6.f             /* (standard errors)^2 between them from which on it gives way, */
-#define DENIED 14.f           /* and at which it is dropped */
-#define MOST_LIGHT 1e30f
-#define CHUNK 64 /* pixels that are fitted together */
-
-static inline float max_of(float a, float b) { return a > b ? a : b; } /* one instruction; b for NaN */
-static inline float least_of(float a, float b) { return a < b ? a : b; }
-static inline int most_int(int a, int b) { return a > b ? a : b; }
-static inline int least_int(int a, int b) { return a < b ? a : b; }
-static inline float luma(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
-static inline float green(float y, float r, float b) { return (y - 0.2126f * r - 0.0722f * b) * (1 / 0.7152f); }
-static inline bool is_surface(uint32_t what) { return (what & 3) == NOC_ROW_SURFACE; }
+#define NARROW_FEW 12u  /* of NOC_ROW_MATTE: gloss under it mirrors what cannot be told from neighbours, */
+#define NARROW_MANY 24u /* and where there are many rays: it has less noise than blur */
+#define FIT 5           /* pixels: reach of the fit on each side, */
+#define BELL 2.5f       /* and the standard deviation of its bell */
+#define PILOT 3         /* pixels: reach of pilots at most */
+#define SURE 0.2f       /* relative standard error of a pilot that is good enough */
+#define ALIKE 8.f       /* sum of two pilots' variances, times this: squared distance at which weights are 0 */
+#define TRUST 4.f       /* times a pilot's own variance: more is not taken from its neighbour's */
+#define MANY_RAYS 8     /* from so many on rays can tell that a fit is wrong: */
+#define DOUBT 6.f       /* (standard errors)^2 between them from which on it gives way, */
+#define DENIED 14.f     /* and at which it is dropped */
+#define CHUNK 64        /* pixels that are fitted together */
 
 static inline size_t row_of(const still_step *s, int y) { return (size_t)y * (size_t)s->width; }
 static inline float reflectance(const still_step *s, size_t i) {
@@ -45,23 +35,6 @@ static inline float reflectance(const still_step *s, size_t i) {
 }
 
 /* ---- light ---- */
-
-/* Along a plane 1 / depth is linear in the picture: smooth_rows_tmpl.c. */
-static void find_plane(const still_step *s, int x, int y, size_t i) {
-    const frame_camera *c = &s->camera;
-    float step_x = 2 / c->width, step_y = -2 / c->height, n[3] = { 0 };
-    float sx = step_x * ((float)x + c->jitter[0]) - 1, sy = 1 + step_y * ((float)y + c->jitter[1]);
-    for (int k = 0; k < 3; k++) {
-        n[0] += s->normal[k][i] * c->right[k];
-        n[1] += s->normal[k][i] * c->up[k];
-        n[2] += s->normal[k][i] * c->forward[k];
-    }
-    float facing = n[2] + n[0] * sx + n[1] * sy, inverse = s->inverse[i] > 0 ? 1 / s->inverse[i] : 0;
-    float across = facing < -1e-6f ? inverse / facing : 0;
-    s->inverse[i] = inverse;
-    s->slope_x[i] = across * n[0] * step_x;
-    s->slope_y[i] = across * n[1] * step_y;
-}
 
 /* What a surface gets, without its texture, and of narrow gloss without what is mirrored. */
 static void light_of(const still_step *s, size_t i, float light[3]) {
@@ -80,8 +53,11 @@ static void split(const still_step *s, int y) {
     for (int x = 0; x < s->width; x++) {
         size_t i = row_of(s, y) + (size_t)x;
         float light[3] = { 0 }, of = reflectance(s, i), variance = s->frame_variance[i];
-        find_plane(s, x, y, i);
-        if (is_surface(s->what[i]))
+        row_plane plane = plane_of(&s->camera, s->normal, s->inverse[i], x, y, i);
+        s->inverse[i] = plane.inverse;
+        s->slope_x[i] = plane.slope_x;
+        s->slope_y[i] = plane.slope_y;
+        if (kind_of(s->what[i]) == NOC_ROW_SURFACE)
             light_of(s, i, light);
         s->y[i] = luma(light[0], light[1], light[2]);
         s->r[i] = light[0];
@@ -298,7 +274,7 @@ static void fit(const still_step *s, int y) {
             size_t i = c.first + (size_t)x;
             float fitted[3], one = sums[ONE][x];
             s->told[i] = 0;
-            if (!is_surface(s->what[i]) || !(one > 0))
+            if (kind_of(s->what[i]) != NOC_ROW_SURFACE || !(one > 0))
                 continue;
             solve(sums, x, fitted);
             change(s, i, fitted, denied(s, i, fitted[0]), sums[NOISE][x] / (one * one));

@@ -8,29 +8,8 @@
 
 enum { WALL = 1u << NOC_CLASS_WALL, WINDOW = 1u << NOC_CLASS_WINDOW };
 
-static int of_class(noc_scene *s, noc_class cls) {
-    return noc_scene_add_material(s, &(noc_material){ .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = cls });
-}
-
-/* A quad of the house; faces a x b. */
-static void side(noc_scene *s, int material, const double p[3], const double a[3], const double b[3]) {
-    double xyz[12];
-    for (int k = 0; k < 3; k++) {
-        xyz[k] = p[k];
-        xyz[3 + k] = p[k] + a[k];
-        xyz[6 + k] = p[k] + a[k] + b[k];
-        xyz[9 + k] = p[k] + b[k];
-    }
-    noc_mesh m = { .vertex_count = 4,
-                   .positions = xyz,
-                   .triangle_count = 2,
-                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
-                   .material = material,
-                   .name = "house" };
-    assert_true(noc_scene_add_mesh(s, &m) >= 0);
-}
 #define SIDE(m, px, py, pz, ax, ay, az, bx, by, bz)                                                                    \
-    side(s, m, (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
+    named_quad(s, m, "house", (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
 
 enum { PANES = 40 }; /* of 2.24 m2 */
 #define PANE 2.24
@@ -39,7 +18,7 @@ enum { PANES = 40 }; /* of 2.24 m2 */
  * a curved wall; a pane that looks the other way, and one 2 m before the wall. */
 static noc_scene *house(bool panes) {
     noc_scene *s = noc_scene_create(NULL);
-    int wall = of_class(s, NOC_CLASS_WALL), glass = of_class(s, NOC_CLASS_WINDOW);
+    int wall = grey_of(s, NOC_CLASS_WALL), glass = grey_of(s, NOC_CLASS_WINDOW);
     SIDE(wall, -12, 0, 0, 24, 0, 0, 0, 0, 12);
     for (int i = 0; i < PANES && panes; i++) {
         double x = -11 + 2.3 * (i % 10), z = 0.8 + 3 * (i / 10);

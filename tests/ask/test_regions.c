@@ -15,27 +15,6 @@ static void keep_message(void *user, noc_log_level level, const char *text) {
         noc_snprintf(told, sizeof(told), "%s", text);
 }
 
-static int of_class(noc_scene *s, noc_class cls) {
-    return noc_scene_add_material(s, &(noc_material){ .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = cls });
-}
-
-static void named_quad(noc_scene *s, int material, const char *name, const double p[3], const double a[3],
-                       const double b[3]) {
-    double xyz[12];
-    for (int k = 0; k < 3; k++) {
-        xyz[k] = p[k];
-        xyz[3 + k] = p[k] + a[k];
-        xyz[6 + k] = p[k] + a[k] + b[k];
-        xyz[9 + k] = p[k] + b[k];
-    }
-    noc_mesh m = { .vertex_count = 4,
-                   .positions = xyz,
-                   .triangle_count = 2,
-                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
-                   .material = material,
-                   .name = name };
-    assert_true(noc_scene_add_mesh(s, &m) >= 0);
-}
 #define Q(name, m, px, py, pz, ax, ay, az, bx, by, bz)                                                                 \
     named_quad(s, m, name, (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
 
@@ -43,8 +22,8 @@ static void named_quad(noc_scene *s, int material, const char *name, const doubl
  * terrain, and a street's name. */
 static noc_scene *town(noc_log *log) {
     noc_scene *s = noc_scene_create(log);
-    int terrain = of_class(s, NOC_CLASS_TERRAIN), road = of_class(s, NOC_CLASS_ROAD),
-        wall = of_class(s, NOC_CLASS_WALL), roof = of_class(s, NOC_CLASS_ROOF), car = of_class(s, NOC_CLASS_VEHICLE);
+    int terrain = grey_of(s, NOC_CLASS_TERRAIN), road = grey_of(s, NOC_CLASS_ROAD), wall = grey_of(s, NOC_CLASS_WALL),
+        roof = grey_of(s, NOC_CLASS_ROOF), car = grey_of(s, NOC_CLASS_VEHICLE);
     Q("ground", terrain, -50, -50, 0, 100, 0, 0, 0, 100, 0);
     Q("way/1", road, -40, 3, 0.02, 80, 0, 0, 0, -6, 0); /* wound downwards */
     Q("house 7", wall, -5, 6, 0, 10, 0, 0, 0, 0, 4);
@@ -129,7 +108,7 @@ static void places_face_as_they_are_said(void **state) {
 static void points_in_another_crs(void **state) {
     const world *w = *state;
     noc_scene *s = noc_scene_create(w->log);
-    int terrain = of_class(s, NOC_CLASS_TERRAIN);
+    int terrain = grey_of(s, NOC_CLASS_TERRAIN);
     assert_int_equal(noc_scene_set_crs(s, "EPSG:32632", (double[3]){ 500000, 0, 0 }), NOC_OK);
     Q("ground", terrain, -50, -50, 0, 100, 0, 0, 0, 100, 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -278,11 +257,11 @@ static void box(noc_scene *s, int m, const char *name, double x, double y, doubl
 static void buried_places_say_why(void **state) {
     const world *w = *state;
     noc_scene *s = noc_scene_create(w->log);
-    int terrain = of_class(s, NOC_CLASS_TERRAIN), bridge = of_class(s, NOC_CLASS_BRIDGE);
+    int terrain = grey_of(s, NOC_CLASS_TERRAIN), bridge = grey_of(s, NOC_CLASS_BRIDGE);
     Q("ground", terrain, -50, -50, 0, 100, 0, 0, 0, 100, 0);
     Q("bridge", bridge, -50, -20, 5, 100, 0, 0, 0, 5, 0);
-    box(s, of_class(s, NOC_CLASS_WALL), "house 7", 10, 10, 0);
-    box(s, of_class(s, NOC_CLASS_LAMP), "way/1", 20, 10, 0);
+    box(s, grey_of(s, NOC_CLASS_WALL), "house 7", 10, 10, 0);
+    box(s, grey_of(s, NOC_CLASS_LAMP), "way/1", 20, 10, 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_view *view = own_view(s, 2, w->log);
     static const struct {

@@ -1,93 +1,9 @@
 /* CityGML: objects, levels of detail, meanings, references, CRSs, and documents that are none. */
+#include "city_expect.h"
 #include "city_pieces.h"
-#include "city_sink.h"
 #include "import/citygml/citygml.h"
 
 #include <math.h>
-
-static city_sink sink;
-
-static int start(void **state) {
-    (void)state;
-    city_clear(&sink);
-    sink.lat_first = false;
-    sink.stop_at = 0;
-    return 0;
-}
-
-static int finish(void **state) {
-    (void)state;
-    city_clear(&sink);
-    return 0;
-}
-
-static noc_status read_text(const char *text, int lod) { return city_read_bytes(&sink, text, strlen(text), lod); }
-
-/* Reads and expects the polygons of exactly these ids, in order, separated by blanks. */
-static void expect(const char *text, int lod, const char *ids) {
-    assert_int_equal(read_text(text, lod), NOC_OK);
-    NOC_ARRAY(char) seen = { 0 };
-    for (size_t i = 0; i < sink.polygons.len; i++) {
-        if (i)
-            assert_true(array_push(&seen, ' '));
-        assert_true(array_append(&seen, sink.polygons.data[i].id, strlen(sink.polygons.data[i].id)));
-    }
-    assert_true(array_push(&seen, 0));
-    assert_string_equal(seen.data, ids);
-    array_free(&seen);
-}
-
-static void refuse(const char *text, noc_status status, const char *cause) {
-    assert_int_equal(read_text(text, 3), status);
-    const char *error = noc_log_last_error(sink.sink.log);
-    if (!strstr(error, cause))
-        fail_msg("\"%s\" does not say \"%s\"", error, cause);
-}
-
-/* ---- limits ---- */
-
-/* 33 million numbers of a polygon, 64 CRSs of a file, 4 MB in a tag. */
-static void test_limits(void **state) {
-    (void)state;
-    const size_t most = cg_most_numbers;
-    assert_int_equal(most, 1 << 25);
-    for (int over = 0; over < 2; over++) {
-        cg_most_numbers = 15 - (size_t)over; /* a square's five corners have 15 */
-        expect(MODEL(MEMBER(BUILDING("B", LOD_SURFACES("2", SQUARE("s", "1", "3"))))), 3, over ? "" : "s");
-        assert_int_equal(city_issue(&sink, "polygon with too many points"), over);
-    }
-    cg_most_numbers = most;
-    char *text = noc_alloc((size_t)6 << 20);
-    for (int count = 64; count < 66; count++) {
-        size_t n = (size_t)sprintf(text, "%s",
-                                   "<CityModel xmlns='http://www.opengis.net/citygml/2.0' "
-                                   "xmlns:b='http://www.opengis.net/citygml/building/2.0' "
-                                   "xmlns:g='http://www.opengis.net/gml'>");
-        for (int i = 0; i < count; i++)
-            n += (size_t)sprintf(text + n,
-                                 "<cityObjectMember><b:Building><b:lod1MultiSurface><g:MultiSurface srsName='EPSG:%d'>"
-                                 "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>0 0 0 1 0 0 1 1 0 0 "
-                                 "0 0</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember>"
-                                 "</g:MultiSurface></b:lod1MultiSurface></b:Building></cityObjectMember>",
-                                 25800 + i);
-        sprintf(text + n, "</CityModel>");
-        if (count == 64)
-            assert_int_equal(read_text(text, 3), NOC_OK);
-        else
-            refuse(text, NOC_ERR_FORMAT, "more than 64 coordinate reference systems in one file");
-    }
-    for (int large = 0; large < 2; large++) {
-        size_t n = (size_t)sprintf(text, "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:x='x' x:a='");
-        size_t bytes = large ? (size_t)5 << 20 : (size_t)3 << 20;
-        memset(text + n, 'a', bytes);
-        sprintf(text + n + bytes, "'/>");
-        if (large)
-            refuse(text, NOC_ERR_FORMAT, "a tag or comment of more than 4 MB, which is not read");
-        else
-            assert_int_equal(read_text(text, 3), NOC_OK);
-    }
-    free(text);
-}
 
 /* ---- levels of detail ---- */
 
@@ -616,7 +532,6 @@ static void test_sink_stops(void **state) {
 int main(void) {
 #define T(f) cmocka_unit_test_setup_teardown(f, start, finish)
     const struct CMUnitTest tests[] = {
-        T(test_limits),
         T(test_lod_best_under_limit),
         T(test_lod_per_building),
         T(test_lod_of_parts),

@@ -14,8 +14,13 @@ static inline int matte(noc_scene *s, float albedo) {
     return noc_scene_add_material(s, &(noc_material){ .albedo = { albedo, albedo, albedo }, .roughness = 1 });
 }
 
-/* A parallelogram at p with edges a, b; faces a x b. */
-static inline void add_quad(noc_scene *s, int material, const double p[3], const double a[3], const double b[3]) {
+static inline int grey_of(noc_scene *s, noc_class cls) {
+    return noc_scene_add_material(s, &(noc_material){ .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = cls });
+}
+
+/* A parallelogram at p with edges a, b; faces a x b. Of the object of that name, which may be NULL. */
+static inline void named_quad(noc_scene *s, int material, const char *name, const double p[3], const double a[3],
+                              const double b[3]) {
     double xyz[12];
     for (int k = 0; k < 3; k++) {
         xyz[k] = p[k];
@@ -27,8 +32,13 @@ static inline void add_quad(noc_scene *s, int material, const double p[3], const
                    .positions = xyz,
                    .triangle_count = 2,
                    .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
-                   .material = material };
+                   .material = material,
+                   .name = name };
     assert_true(noc_scene_add_mesh(s, &m) >= 0);
+}
+
+static inline void add_quad(noc_scene *s, int material, const double p[3], const double a[3], const double b[3]) {
+    named_quad(s, material, NULL, p, a, b);
 }
 
 #define QUAD(s, m, px, py, pz, ax, ay, az, bx, by, bz)                                                                 \

@@ -3,10 +3,6 @@
 
 #include <nocturne/photometry.h>
 
-static int of_class(noc_scene *s, noc_class cls) {
-    return noc_scene_add_material(s, &(noc_material){ .albedo = { .5f, .5f, .5f }, .roughness = 1, .cls = cls });
-}
-
 static noc_patch quad_half(float x, float y, float dx, float dy, uint32_t material) {
     return (
         noc_patch){ { x, y, 0 }, { dx, 0, 0 }, { 0, dy, 0 }, { 0, 0, 1 }, fabsf(dx * dy) / 2, material, .level = 0 };
@@ -18,7 +14,7 @@ static noc_patch quad_half(float x, float y, float dx, float dy, uint32_t materi
 static void classes_have_their_closed_form(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
-    int wall = of_class(s, NOC_CLASS_WALL), roof = of_class(s, NOC_CLASS_ROOF), pane = of_class(s, NOC_CLASS_WINDOW);
+    int wall = grey_of(s, NOC_CLASS_WALL), roof = grey_of(s, NOC_CLASS_ROOF), pane = grey_of(s, NOC_CLASS_WINDOW);
     QUAD(s, wall, -5, 0, 0, 10, 0, 0, 0, 0, 4);
     QUAD(s, roof, -5, 0, 4, 10, 0, 0, 0, 8, 0);
     QUAD(s, pane, 6, 0, 0, .3, 0, 0, 0, 0, .4);
@@ -73,7 +69,7 @@ static void windows_stand_beside(void **state) {
     double pane[4][3] = { { -1, 4, 1 }, { 1, 4, 1 }, { 1, 4, 2.5 }, { -1, 4, 2.5 } };
     double lamp = 300 / 36.0, window = 25 * lambert(pane, 4);
     noc_scene *s = noc_scene_create(NULL);
-    int road = of_class(s, NOC_CLASS_ROAD);
+    int road = grey_of(s, NOC_CLASS_ROAD);
     int glow = noc_scene_add_material(
         s, &(noc_material){ .roughness = 1, .emission = { 25, 25, 25 }, .two_sided = true, .cls = NOC_CLASS_WINDOW });
     add_floor(s, road, 0, 0, 0, 40);
@@ -130,7 +126,7 @@ static void windows_stand_beside(void **state) {
 static void errors_bound_the_lux(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
-    int floor = of_class(s, NOC_CLASS_ROAD);
+    int floor = grey_of(s, NOC_CLASS_ROAD);
     QUAD(s, floor, -100, -100, 0, 200, 0, 0, 0, 200, 0);
     point_light(s, 0, 0, 8, 1000);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -157,7 +153,7 @@ static void errors_bound_the_lux(void **state) {
 static void errors_of_classes_cover(void **state) {
     (void)state;
     noc_scene *s = crowd(400);
-    uint32_t other = (uint32_t)of_class(s, NOC_CLASS_ROAD);
+    uint32_t other = (uint32_t)grey_of(s, NOC_CLASS_ROAD);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_view *view = own_view(s, 2, NULL);
     noc_patch parts[] = { quad_half(-6, -4, 12, 8, 0), quad_half(6, 4, -12, -8, 0), quad_half(-3, 2, 1, 1, other) };
