@@ -1,10 +1,14 @@
 /* nocturne/built.h: a city as one file, as `nocturne build` writes it: a committed scene, ready to be rendered.
  *
- * noc_scene_load takes such a file like any input, tells it by its content, and reads no other with it. The scene is
- * the one that was saved: it renders the same pictures, bit for bit, and may be edited as that could. What a build
- * decides is decided: of noc_import_params only threads, max_memory, strict, progress, environment, materials, wet and
- * group_states are read. Rain falls on what classes were made of when the scene was saved, and not twice. Windows are
- * switched by noc_scene_set_windows, cars by noc_scene_set_time.
+ * noc_scene_load takes such a file like any input, tells it by its content, and reads no file of another kind with it.
+ * The scene is the one that was saved: it renders the same pictures, bit for bit, and may be edited as that could. What
+ * a build decides is decided: of noc_import_params only threads, max_memory, strict, progress, environment, materials,
+ * wet and group_states are read. Rain falls on what classes were made of when the scene was saved, and not twice.
+ * Windows are switched by noc_scene_set_windows, cars by noc_scene_set_time.
+ *
+ * Several such files are read as one scene, where they stand in the CRS that all were built in: what they share
+ * (materials, models, groups of lights by name) is there once, and the land to the horizon is laid around all. The
+ * camera, the map around the scene and the time are the first one's. Nothing is looked at that two may both hold.
  *
  * The file is read as a whole and checked: what it holds is a stranger's word, as of all inputs. Its numbers lie as the
  * machine has them, and as this version of the library keeps them: one of another version, or of a machine with another

@@ -362,10 +362,10 @@ NOC_API void noc_report_destroy(noc_report *report);
 /* A path may be a folder (all files in it and below, by name; what is in no format that is read is left out, and told),
  * a pattern of the shell's (where no file is called so), or "@LIST": a file with an input a line, from its own folder
  * on. Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and
- * commits. "builtin:NAME" is the built-in scene of that name; such scenes come before all files. A built city
- * (nocturne/built.h) is an input alone, into an empty scene. A scene that is
- * committed takes no load: that is NOC_ERR_ARGUMENT, and the scene stays as it is. After any other failure the scene
- * must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
+ * commits. "builtin:NAME" is the built-in scene of that name; such scenes come before all files. Built
+ * cities (nocturne/built.h) are inputs by themselves, one or several, into an empty scene. A scene that is committed
+ * takes no load: that is NOC_ERR_ARGUMENT, and the scene stays as it is. After any other failure the scene must be
+ * destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 

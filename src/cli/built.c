@@ -1,23 +1,28 @@
-/* An input that is a built city: what is decided in it, and what may still be switched. */
+/* Inputs that are built cities: what is decided in it, and what may still be switched. */
 #include "cli.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 bool cli_is_built(const cli_args *args) {
-    return args->input_count == 1 && !cli_builtin(args->inputs[0]) && noc_built_is(args->inputs[0]);
+    bool built = args->input_count > 0;
+    for (size_t i = 0; built && i < args->input_count; i++)
+        built = !cli_builtin(args->inputs[i]) && noc_built_is(args->inputs[i]);
+    return built;
 }
 
 bool cli_has_map(const cli_args *args, const noc_import_params *import) {
     noc_built_info info;
     if (import->environment)
         return true;
-    if (!cli_is_built(args) || noc_built_get_info(args->inputs[0], NULL, &info))
-        return false;
-    for (size_t i = 0; i < info.section_count; i++)
-        if (!strcmp(info.sections[i].name, "sky"))
-            return true;
-    return false;
+    bool built = cli_is_built(args), map = false;
+    for (size_t k = 0; built && k < args->input_count && !map; k++) {
+        if (noc_built_get_info(args->inputs[k], NULL, &info))
+            return false;
+        for (size_t i = 0; i < info.section_count; i++)
+            map = map || !strcmp(info.sections[i].name, "sky");
+    }
+    return map;
 }
 
 /* What costs little to switch, and so may be another than it was built with. */

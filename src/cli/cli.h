@@ -162,8 +162,8 @@ void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAUL
 noc_report_line *cli_issues(const noc_report *report, size_t *count);
 uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 
-/* built.c: the inputs are a built city (nocturne/built.h). */
-bool cli_is_built(const cli_args *args);
+/* built.c: the inputs are built cities (nocturne/built.h). */
+bool cli_is_built(const cli_args *args); /* each of them */
 /* Is there a map around the city: one that is named, or that of the built city? */
 bool cli_has_map(const cli_args *args, const noc_import_params *import);
 /* Refuses what its build has decided otherwise, of options and of a recipe around it: CLI_OK or CLI_USAGE. */

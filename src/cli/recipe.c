@@ -59,6 +59,8 @@ int cli_use_recipe(const cli_command *command, void *arguments) {
     for (size_t i = 0; i < args->input_count && reads_cities(command); i++) {
         if (!noc_recipe_is(args->inputs[i]))
             continue;
+        if (index < args->input_count && noc_built_is(args->inputs[index]) && noc_built_is(args->inputs[i]))
+            continue; /* built cities are joined, and the first one's recipe counts */
         if (index < args->input_count)
             return cli_usage(command, "%.200s and %.200s are both recipes, or built; one makes a city",
                              args->inputs[index], args->inputs[i]);

@@ -102,7 +102,7 @@ for options in '--window-kelvin 3000' '--no-windows' '--lod 1' '--lamp-lumens 9'
 done
 expect "nor where it is built again" 2 'lod: rain.noct is built already' build rain.noct --lod 1 -o a.noct
 expect "or told of" 2 'lod: rain.noct is built already' info rain.noct --lod 1
-expect "nor lamps beside it" 1 'rain.noct: is a built city, which is an input alone' \
+expect "nor lamps beside it" 1 'rain.noct: is a built city, and ' \
     render rain.noct --lamps city.gml -o a.png
 run render rain.noct --window-kelvin 2900 --window-lit 0.8 --frames 1 -q -o a.png
 test "$status" = 0 && test ! -s err
@@ -155,7 +155,7 @@ result $? "info tells it in JSON"
 expect "another ending" 2 'must end in .noct' build city.yaml -o city.bin
 expect "no output" 2 'where to' build city.yaml
 expect "an input alone" 2 'both recipes, or built' render city.noct city.yaml -o a.png
-expect "a mesh beside it" 1 'which is an input alone' render city.noct city.gml -o a.png
+expect "a mesh beside it" 1 'is a built city, and' render city.noct city.gml -o a.png
 head -c 5000 city.noct >short.noct
 expect "one that is cut short" 1 'short.noct: is damaged: it has 5000 bytes' render short.noct -o a.png
 run build nothing.gml -o none.noct

@@ -236,7 +236,7 @@ static void test_alone(void **state) {
     noc_scene *scene = noc_scene_create(log);
     const char *two[] = { path, city_file() };
     assert_int_equal(noc_scene_load(scene, two, 2, NULL, NULL), NOC_ERR_ARGUMENT);
-    assert_non_null(strstr(noc_log_last_error(log), "an input alone"));
+    assert_non_null(strstr(noc_log_last_error(log), "is a built city, and"));
     noc_scene_destroy(scene);
     scene = noc_scene_create(log);
     noc_material m = noc_class_material(NOC_CLASS_WALL);

@@ -268,3 +268,85 @@ noc_status built_read_report(noct_file *f, noc_report *report) {
             return noct_wrong(f, "windows %zu are of no file", i);
     return f->status || array_append(&report->panes, panes, count) ? f->status : noct_no_memory(f);
 }
+
+/* ---- joining ---- */
+
+static const char *copy(noc_report *to, const char *text) { return arena_strdup(&to->arena, text ? text : ""); }
+
+static void copy_texts(noc_report *to, noc_report_file *file) {
+    for (size_t k = 0; k < NOC_COUNT(fields); k++) {
+        char *at = (char *)file + fields[k].offset;
+        const char *text;
+        if (fields[k].kind != FIELD_TEXT)
+            continue;
+        memcpy(&text, at, sizeof(text));
+        text = copy(to, text);
+        memcpy(at, &text, sizeof(text));
+    }
+}
+
+static void copy_lists(noc_report *to, noc_report_file *file) {
+    noc_report_column *columns = arena_alloc(&to->arena, file->column_count * sizeof(*columns));
+    for (size_t i = 0; i < file->column_count && columns; i++) {
+        columns[i] = file->columns[i];
+        columns[i].name = copy(to, columns[i].name);
+        columns[i].field = copy(to, columns[i].field);
+        columns[i].unit = copy(to, columns[i].unit);
+        columns[i].example = copy(to, columns[i].example);
+    }
+    file->columns = columns;
+    noc_report_line *lines = arena_alloc(&to->arena, file->line_count * sizeof(*lines));
+    for (size_t i = 0; i < file->line_count && lines; i++) {
+        lines[i] = file->lines[i];
+        lines[i].reason = copy(to, lines[i].reason);
+        lines[i].examples = copy(to, lines[i].examples);
+    }
+    file->lines = lines;
+}
+
+/* Lamps of a rule that both have are counted together. */
+static void join_rules(noc_report *to, const noc_report *from) {
+    noc_report_rule *rules = arena_alloc(&to->arena, (to->rule_count + from->rule_count) * sizeof(*rules));
+    size_t count = to->rule_count;
+    if (!rules)
+        return;
+    if (count)
+        memcpy(rules, to->rules, count * sizeof(*rules));
+    for (size_t i = 0; i < from->rule_count; i++) {
+        size_t k = 0;
+        while (k < to->rule_count && strcmp(rules[k].place, from->rules[i].place))
+            k++;
+        if (k < to->rule_count)
+            rules[k].lamps += from->rules[i].lamps;
+        else
+            rules[count++] =
+                (noc_report_rule){ .place = copy(to, from->rules[i].place), .lamps = from->rules[i].lamps };
+    }
+    to->rules = rules;
+    to->rule_count = count;
+}
+
+bool built_join_report(noc_report *to, const noc_report *from, const bool *taken, size_t windows) {
+    size_t first = to->files.len;
+    to->lamps_inferred += from->lamps_inferred;
+    to->road_cars += from->road_cars;
+    to->roads_drawn += from->roads_drawn;
+    to->images_reduced += from->images_reduced;
+    if (!*to->profiles)
+        memcpy(to->profiles, from->profiles, sizeof(to->profiles));
+    join_rules(to, from);
+    for (size_t i = 0; i < from->files.len; i++) {
+        noc_report_file file = from->files.data[i];
+        copy_texts(to, &file);
+        copy_lists(to, &file);
+        if (to->arena.refused || !array_push(&to->files, file))
+            return false;
+    }
+    for (size_t i = 0, w = 0; i < from->panes.len; i++) {
+        const report_panes *p = &from->panes.data[i];
+        for (size_t end = w + p->panes; w < end && w < windows; w++)
+            if (taken[w] && !report_pane(to, first + p->file, p->counts))
+                return false;
+    }
+    return !to->arena.refused;
+}

@@ -431,25 +431,6 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
     return NOC_OK;
 }
 
-/* The first of the inputs that is a built city, but for those that a folder holds; NULL where there is none. */
-static const char *find_built(const importer *im) {
-    for (size_t i = 0; i < im->input_count; i++)
-        if (im->inputs[i].is_file && !im->inputs[i].folder && noct_is(im->inputs[i].path))
-            return im->inputs[i].path;
-    return NULL;
-}
-
-static noc_status load_built(importer *im, const char *path) {
-    const noc_scene *s = im->scene;
-    if (im->input_count > 1)
-        return noc_error(im->log, NOC_ERR_ARGUMENT,
-                         "%s: is a built city, which is an input alone: build it together with the others", path);
-    if (s->meshes.len || s->lights.len || s->materials.len || s->models.len || s->edits.len || s->crs_name)
-        return noc_error(im->log, NOC_ERR_ARGUMENT, "%s: is a built city, and the scene has something in it already",
-                         path);
-    return built_read(im, path);
-}
-
 /* Files of windows: from their numbers among the inputs to those in the report. */
 static void number_panes(importer *im) {
     for (size_t i = 0; im->report && i < im->report->panes.len; i++) {
@@ -461,7 +442,7 @@ static void number_panes(importer *im) {
     }
 }
 
-/* alone: of a built city, to which CRSs and boxes are words of its past. */
+/* alone: of built cities, to which CRSs and boxes are words of its past. */
 static noc_status check_params(const noc_import_params *params, bool alone, noc_log *log) {
     noc_status status = noc_option_check(noc_import_options(), params, "import", log);
     if (!status && (params->threads < 0 || params->threads > MOST_THREADS))
@@ -488,7 +469,9 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
             return noc_null(scene->log, "noc_scene_load");
     if (!params)
         params = &defaults;
-    bool alone = path_count == 1 && noct_is(paths[0]);
+    bool alone = path_count > 0;
+    for (size_t i = 0; i < path_count; i++)
+        alone = alone && noct_is(paths[i]);
     noc_status status = check_params(params, alone, scene->log);
     if (status)
         return status;
@@ -511,10 +494,10 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     }
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
-    const char *built = status ? NULL : find_built(&im);
+    const char *built = status ? NULL : built_find(&im);
     sources_note_given(&im, paths, path_count, built);
     if (built)
-        status = load_built(&im, built);
+        status = built_load(&im, built);
     else if (!status)
         status = luminaires_start(&im);
     scene->maintenance = built || status ? scene->maintenance : params->maintenance;
