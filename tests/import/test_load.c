@@ -61,7 +61,15 @@ static void test_lamps(void **state) {
     assert_int_equal(f->lamps, 2);
     assert_int_equal(f->lights, r.info.lights);
     assert_int_equal(r.info.lights_inferred, 0);
-    assert_int_equal(r.warnings, 0);
+    assert_int_equal(r.warnings, 1); /* light that is missing is told by whatever command loads it */
+    assert_non_null(strstr(r.last_warning, "far.lamps: 2 of 3 lamps are left out: 1 outside the city, the nearest 7"));
+    assert_non_null(strstr(r.last_warning, "1 without a place in it"));
+    assert_null(strstr(r.last_warning, "exchanged"));
+    finish(&r);
+    LOAD(&r, DEFAULTS, file("slip.lamps", NEAR_LAMP "lamp 48.76231 11.42278\n"), file("a", CITY));
+    assert_int_equal(r.status, NOC_OK);
+    assert_non_null(strstr(r.last_warning, "1 of 2 lamps is left out"));
+    assert_non_null(strstr(r.last_warning, "; the coordinates of 1 seem exchanged, longitude and latitude"));
     finish(&r);
     noc_report_totals totals;
     noc_report_get_totals(NULL, &totals);

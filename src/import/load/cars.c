@@ -48,18 +48,23 @@ noc_status traffic_add(importer *im) {
                               "--traffic");
         return NOC_OK;
     }
+    size_t left = 0;
     city_traffic *traffic = city_traffic_create(im->scene, &im->params->cars);
     noc_status status = traffic ? add_bodies(im, traffic) : NOC_ERR_MEMORY;
     for (size_t i = 0; i < im->tracks.len && !status; i++) {
         const pending_track *p = &im->tracks.data[i];
         status = city_traffic_follow(traffic, &p->track, im->inputs[p->input].issues, &cars);
         im->inputs[p->input].file.cars += cars;
+        left += !cars;
         if (i % 256 == 0 && !import_progress(im, &im->inputs[p->input], im->bytes_before))
             status = NOC_ERR_CANCELLED;
     }
     if (!status && roads)
         status = city_traffic_roads(traffic, im->roads.data, roads, &im->params->progress, &im->report->road_cars);
     city_traffic_destroy(traffic);
+    if (!status && left)
+        noc_warn(im->log, "%zu of %zu tracks of cars %s left out: outside of the city, without ground, or too short",
+                 left, im->tracks.len, left == 1 ? "is" : "are");
     if (!status && im->scene->cars.len)
         noc_info(im->log, "%zu cars, %zu of them along roads of maps", im->scene->cars.len, im->report->road_cars);
     return status;

@@ -132,10 +132,11 @@ static bool infer_update(void *user, const char *what, double done) {
 /* What became of the lamps of the inputs. */
 typedef struct lamp_fate {
     size_t given, mapped, outside, lost; /* lost: without a place */
+    size_t strays;                       /* of those lost: strays.c has warned of them */
     double nearest;                      /* of those outside, m */
     double closest;                      /* of those mapped, m; 0 within the city */
     size_t others;                       /* lights of the scene that are no lamps of these */
-    /* lie within the city if their axes are exchanged; counted where none is of use */
+    /* of those outside or lost lie within the city if their axes are exchanged; counted where it is told */
     size_t exchanged;
 } lamp_fate;
 
@@ -153,7 +154,9 @@ static void stand_inferred(importer *im, pending_lamp *p, const city_lamp_params
 /* Stands the lamps that were read, and those along roads. */
 static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
     noc_status status = NOC_OK;
-    *fate = (lamp_fate){ .nearest = INFINITY, .closest = INFINITY, .others = im->scene->lights.len };
+    *fate = (lamp_fate){
+        .nearest = INFINITY, .closest = INFINITY, .others = im->scene->lights.len, .strays = im->lamps_stray
+    };
     for (size_t i = 0; i < im->lamps.len; i++)
         fate->given += !im->lamps.data[i].along;
     for (size_t i = 0; i < im->input_count; i++) {
@@ -197,17 +200,20 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
     return status;
 }
 
+/* Of those that are left out. */
 static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
     double xy[2];
-    for (size_t i = 0; i < im->lamps.len; i++)
-        fate->exchanged += !im->lamps.data[i].along && place_exchanged(im, &im->lamps.data[i].given, xy) && e->any &&
-                           distance_outside(e, xy) <= OUTSIDE;
-    for (size_t i = 0; i < im->lost.len; i++)
-        fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
+    for (size_t i = 0; i < im->lamps.len && e->any; i++) {
+        const pending_lamp *p = &im->lamps.data[i];
+        fate->exchanged += !p->along && distance_outside(e, p->lamp.xyz) > OUTSIDE &&
+                           place_exchanged(im, &p->given, xy) && distance_outside(e, xy) <= OUTSIDE;
+    }
+    for (size_t i = 0; i < im->lost.len && e->any; i++)
+        fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && distance_outside(e, xy) <= OUTSIDE;
 }
 
-/* "a.csv: none of its 40 lamps is of use: 40 outside the city, ...", with the likely cause. */
-static void tell_useless(const importer *im, const lamp_fate *fate, char *text, size_t size) {
+/* The files whose lamps are left out: "a.csv and 2 more". Returns whether all of them are in degrees. */
+static bool name_files(const importer *im, char *text, size_t size) {
     const input *first = NULL;
     size_t files = 0;
     bool degrees = true;
@@ -217,17 +223,33 @@ static void tell_useless(const importer *im, const lamp_fate *fate, char *text, 
             degrees = degrees && im->inputs[i].file.degrees;
             files++;
         }
-    char more[40] = "", outside[80] = "", lost[60] = "", rest[60] = "", cause[160] = "";
-    size_t others = fate->given - fate->outside - fate->lost;
+    char more[40] = "";
     if (files > 1)
         snprintf(more, sizeof(more), " and %zu more", files - 1);
+    noc_snprintf(text, size, "%.500s%s", first ? first->path : "", more);
+    return degrees;
+}
+
+/* ", 40 outside the city, the nearest 3.4 km away, 2 inside buildings or refused": why lamps are left out, but for
+ * those that are told elsewhere. */
+static void tell_reasons(const lamp_fate *fate, char *text, size_t size) {
+    char outside[80] = "", lost[60] = "", rest[60] = "";
+    size_t without = fate->lost - fate->strays, others = fate->given - fate->mapped - fate->outside - fate->lost;
     if (fate->outside)
         snprintf(outside, sizeof(outside), ", %zu outside the city, the nearest %.1f km away", fate->outside,
                  fate->nearest / 1000);
-    if (fate->lost)
-        snprintf(lost, sizeof(lost), ", %zu without a place in it", fate->lost);
+    if (without)
+        snprintf(lost, sizeof(lost), ", %zu without a place in it", without);
     if (others)
         snprintf(rest, sizeof(rest), ", %zu inside buildings or refused", others);
+    noc_snprintf(text, size, "%s%s%s", outside, lost, rest);
+}
+
+/* "a.csv: none of its 40 lamps is of use: 40 outside the city, ...", with the likely cause. */
+static void tell_useless(const importer *im, const lamp_fate *fate, char *text, size_t size) {
+    char files[560], reasons[200], cause[160];
+    bool degrees = name_files(im, files, sizeof(files));
+    tell_reasons(fate, reasons, sizeof(reasons));
     if (2 * fate->exchanged > fate->given)
         snprintf(cause, sizeof(cause),
                  "with %s exchanged %s%zu of them fall within the city, so exchange them in the file",
@@ -236,8 +258,24 @@ static void tell_useless(const importer *im, const lamp_fate *fate, char *text, 
     else
         snprintf(cause, sizeof(cause), "%s",
                  fate->outside ? "is one of the CRSs wrong, or are they another town's?" : "nocturne info tells more");
-    noc_snprintf(text, size, "%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more,
-                 fate->given, fate->given == 1 ? "" : "s", outside, lost, rest, cause);
+    noc_snprintf(text, size, "%s: none of %zu lamp%s is of use%s: %s", files, fate->given, fate->given == 1 ? "" : "s",
+                 reasons, cause);
+}
+
+/* Light that is missing for what may be a fault of the input. */
+static void warn_of_left_out(importer *im, const extent *e, lamp_fate *fate) {
+    size_t left = fate->given - fate->mapped - fate->strays;
+    if (!left)
+        return;
+    count_exchanged(im, e, fate);
+    char files[560], reasons[200], cause[120] = "";
+    bool degrees = name_files(im, files, sizeof(files));
+    tell_reasons(fate, reasons, sizeof(reasons));
+    if (fate->exchanged)
+        snprintf(cause, sizeof(cause), "; the coordinates of %zu seem exchanged%s", fate->exchanged,
+                 degrees ? ", longitude and latitude" : "");
+    noc_warn(im->log, "%s: %zu of %zu lamps %s left out: %s%s", files, left, fate->given, left == 1 ? "is" : "are",
+             reasons + strlen(", "), cause);
 }
 
 /* A picture by lamps of our own must not pass for one by the lamps that were given. */
@@ -350,8 +388,8 @@ static noc_status light_city(importer *im, const extent *e) {
     status = status ? status : refuse_useless(im, e, &fate);
     if (status)
         return status;
-    if (fate.outside && fate.mapped)
-        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
+    if (fate.mapped)
+        warn_of_left_out(im, e, &fate);
     warn_of_distance(im, &fate);
     warn_of_roofs(im, &tally);
     tell_along_roads(im, &fate);

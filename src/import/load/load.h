@@ -210,6 +210,7 @@ typedef struct importer {
     geo_triangles green, squares, lots; /* areas of maps that are drawn: lawns, pavements, roads; as water */
     geo_triangles water;                /* of maps that are read for their roads; local metres, z of no use */
     NOC_ARRAY(pending_lamp) lamps;
+    size_t lamps_stray;          /* that strays_drop left out, and warned of */
     size_t streets_inferred;     /* along which lamps are placed by a rule */
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     noc_report_lamp lamp_now;    /* that is being stood (each_lamp.c) */

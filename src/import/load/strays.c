@@ -176,6 +176,7 @@ static void judge_all(importer *im, strays *s) {
     }
     if (!im->inspect)
         im->lamps.len = kept;
+    im->lamps_stray = left;
     warn(im, left, apart, s->places.len, metres);
 }
 
