@@ -89,21 +89,30 @@ void cli_print_windows(const char *heading, const noc_window_counts *c) {
         printf("%*s%s of them are the model's own\n", (int)strlen(heading), "", noc_text_count(a, c->own));
 }
 
-void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
-                       const noc_import_params *import) {
+char *cli_assumed(const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import) {
     const double values[NOC_LAMP_DEFAULT_COUNT] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };
-    char a[32];
-    const char *before = heading;
+    char a[32], value[96];
+    char *text = cli_format("%s", "");
     for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
         if (!assumed[i])
             continue;
-        printf("%s%s without %s: ", before, noc_text_count(a, assumed[i]), lamp_defaults[i].what);
         if (lamp_defaults[i].option)
-            printf("%.10g %s (--%s)", values[i], lamp_defaults[i].unit, lamp_defaults[i].option);
+            snprintf(value, sizeof(value), "%.10g %s (--%s)", values[i], lamp_defaults[i].unit,
+                     lamp_defaults[i].option);
         else
-            fputs(lamp_defaults[i].unit, stdout);
-        before = ", ";
+            snprintf(value, sizeof(value), "%s", lamp_defaults[i].unit);
+        char *before = text;
+        text = cli_format("%s%s%s without %s: %s", before, *before ? ", " : "", noc_text_count(a, assumed[i]),
+                          lamp_defaults[i].what, value);
+        free(before);
     }
-    if (before != heading)
-        putchar('\n');
+    return text;
+}
+
+void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
+                       const noc_import_params *import) {
+    char *text = cli_assumed(assumed, import);
+    if (*text)
+        printf("%s%s\n", heading, text);
+    free(text);
 }

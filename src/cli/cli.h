@@ -148,11 +148,14 @@ const char *cli_builtin(const char *input); /* name of the built-in scene that a
 void cli_add_named(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
 void cli_note_chosen(const cli_args *args, noc_import_params *import);
-/* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
 /* "50 windows, 17 lit, 8.4 on 100 m2 of wall, 2.9 lit; walls without: 3 too small"; nothing where there are no walls */
 void cli_print_windows(const char *heading, const noc_window_counts *counts);
 /* The sky's luminance [cd/m2] at the zenith and its SQM value; "dark" for 0. */
 void cli_print_sky(const char *heading, double sky);
+/* What lamps do not tell, and what is taken for it: "2 without height: 6 m (--lamp-height), ..."; "" where they tell
+ * all. free() it. */
+char *cli_assumed(const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import);
+/* That as a line; nothing where they tell all. */
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import);
 
@@ -160,6 +163,9 @@ void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAUL
 /* The inputs' and the lamps' troubles, the same reason in several files as one, the gravest first. Texts are the
  * report's; free() the array. */
 noc_report_line *cli_issues(const noc_report *report, size_t *count);
+/* What of the inputs was left out or guessed at, so that figures may be wrong by it: "left out: 3, guessed at: 2: 2 x
+ * REASON (IDS), ..." with the gravest few; "" where nothing was. free() it. */
+char *cli_doubts(const noc_report *report);
 uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 
 /* built.c: the inputs are built cities (nocturne/built.h). */

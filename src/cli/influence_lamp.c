@@ -149,6 +149,7 @@ static void print_json(const influence_job *job, const noc_reach *r, const noc_r
     json_value("far_01lx", r->far);
     json_place(job, "far_at", r->far_place);
     json_value("met_lumens", r->met);
+    cli_site_json(&job->site, &job->args->render);
     printf(",\n  \"objects\": [");
     for (size_t i = 0; i < count; i++) {
         printf("%s    {\"name\": ", i ? ",\n" : "\n");

@@ -256,6 +256,7 @@ static noc_status print_json(influence_job *job) {
     json_text("crs", job->site.info.given_crs);
     printf(", \"note\": ");
     cli_json_text(stdout, *job->buried ? job->buried : NULL);
+    cli_site_json(&job->site, &job->args->render);
     printf(",\n ");
     json_estimate("lamps", s->kinds[NOC_EMITTER_LAMP].lux);
     printf(",\n ");

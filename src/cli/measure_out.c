@@ -52,6 +52,7 @@ static void print_json(const measure_job *job, const measure_told *t) {
     cli_json_text(stdout, t->what);
     printf(",\n  \"crs\": ");
     cli_json_text(stdout, job->site.info.given_crs);
+    cli_site_json(&job->site, &job->args->render);
     measure_json_figures(stdout, job, t, "\n  ");
     json_figure(stdout, "\n  ", "seconds", t->info.seconds);
     printf("}");

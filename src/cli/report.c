@@ -327,6 +327,35 @@ noc_report_line *cli_issues(const noc_report *report, size_t *count) {
     return issues;
 }
 
+char *cli_doubts(const noc_report *report) {
+    enum { SHOWN = 3 };
+    size_t n, left = 0, guessed = 0, reasons = 0;
+    noc_report_line *issues = cli_issues(report, &n);
+    char a[64], b[32], reason[160];
+    char *list = cli_format("%s", "");
+    for (size_t i = 0; i < n; i++) {
+        if (issues[i].lossless)
+            continue;
+        *(issues[i].repaired ? &guessed : &left) += issues[i].count;
+        if (reasons++ >= SHOWN)
+            continue;
+        char *before = list;
+        list = cli_format("%s%s%s x %s", before, *before ? ", " : "", noc_text_count(a, issues[i].count),
+                          noc_text_clean(reason, sizeof(reason), issues[i].reason));
+        free(before);
+    }
+    char *more = reasons > SHOWN ? cli_format(", and for %s (nocturne info --scene tells all)",
+                                              noc_text_many(a, reasons - SHOWN, "other reason"))
+                                 : cli_format("%s", "");
+    char *text = !reasons ? cli_format("%s", "")
+                          : cli_format("left out: %s, guessed at: %s: %s%s", noc_text_count(a, left),
+                                       noc_text_count(b, guessed), list, more);
+    free(list);
+    free(more);
+    free(issues);
+    return text;
+}
+
 static void print_issues(const noc_report *report) {
     enum { SHOWN = 8 };
     size_t n;

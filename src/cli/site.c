@@ -1,6 +1,8 @@
 /* A city whose light is queried: what `influence` and `measure` share. */
 #include "site.h"
 
+#include <stdlib.h>
+
 int cli_site_check(render_args *args) {
     int status = cli_choose_camera(args);
     if (status)
@@ -35,6 +37,31 @@ noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows, c
     return status || site->view ? status : NOC_ERR_MEMORY;
 }
 
+/* What the figures rest on, after them: on standard error, because tables for programs are on the other. */
+static void tell_doubts(const cli_site *site, const render_args *args) {
+    noc_report_totals totals;
+    noc_report_get_totals(site->report, &totals);
+    char *assumed = cli_assumed(totals.lamps_assumed, &args->import), *doubts = cli_doubts(site->report);
+    if (*assumed)
+        cli_error("assumed of lamps: %s", assumed);
+    if (*doubts)
+        cli_error("inputs: %s", doubts);
+    free(assumed);
+    free(doubts);
+}
+
+void cli_site_json(const cli_site *site, const render_args *args) {
+    noc_report_totals t;
+    noc_report_get_totals(site->report, &t);
+    char *assumed = cli_assumed(t.lamps_assumed, &args->import), *doubts = cli_doubts(site->report);
+    printf(", \"lamps_left_out\": %zu, \"assumed\": ", t.lamps_dropped);
+    cli_json_text(stdout, assumed);
+    printf(", \"inputs\": ");
+    cli_json_text(stdout, doubts);
+    free(assumed);
+    free(doubts);
+}
+
 int cli_site_run(cli_site *site, render_args *args, noc_status (*work)(void *job), void *job) {
     cli_catch_signals();
     cli_nothing_to_keep(true);
@@ -42,6 +69,8 @@ int cli_site_run(cli_site *site, render_args *args, noc_status (*work)(void *job
     *site = (cli_site){ .log = cli_log_create(&args->common) };
     noc_status failed = work(job);
     cli_nothing_to_keep(false);
+    if (!failed && !cli_interrupted() && !args->common.quiet)
+        tell_doubts(site, args);
     noc_view_destroy(site->view);
     noc_device_destroy(site->device);
     noc_report_destroy(site->report);

@@ -39,8 +39,12 @@ int cli_site_check(render_args *args);
 /* Loads the inputs and makes a view of them, showing progress. `dark_windows`: all windows are switched off. `output`:
  * the file that will be written; one that the city is made of is an error. NULL: none. */
 noc_status cli_site_open(cli_site *site, render_args *args, bool dark_windows, const char *output);
-/* Fills `site` with a log alone, calls `work`, which may open it, and destroys all that is in it. Returns the exit
- * status, after reporting an interruption. */
+/* Prints the members of a JSON object, after others, that tell what figures rest on: lamps_left_out, assumed, inputs.
+ */
+void cli_site_json(const cli_site *site, const render_args *args);
+/* Fills `site` with a log alone, calls `work`, which may open it, and destroys all that is in it. Tells on
+ * standard error what was assumed, left out and guessed at. Returns the exit status, after reporting an interruption.
+ */
 int cli_site_run(cli_site *site, render_args *args, noc_status (*work)(void *job), void *job);
 
 #endif

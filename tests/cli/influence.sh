@@ -53,6 +53,21 @@ assert abs(rows[0]['lumens'] - 9000) < 1 and j['lux'] > 0 and j['sky'] == 0
 PY
 result $? "JSON has names, streets, tags and errors"
 
+# What figures rest on is told by every command that gives some, on standard error and in JSON.
+gml=$source_dir/tests/cli/city.gml
+printf 'id,x,y,lamp_type\n1,678020,5403004,Glow-worm\n2,678020,5403000,LED\n3,681420,5403000,LED\n' >doubtful.csv
+for command in influence measure; do
+    run $command "$gml" doubtful.csv --crs EPSG:25832 --region point:678020,5403002 --json
+    grep -q '^nocturne: assumed of lamps: 2 without height: 6 m (--lamp-height), 2 without flux' err &&
+        grep -q '^nocturne: inputs: left out: 2, guessed at: 1: 1 x lamp more than 2 km outside the city, ' err &&
+        grep -q 'warning: doubtful.csv: 1 of 3 lamps is left out: 1 outside the city, the nearest 3.4 km away$' err &&
+        grep -q '"lamps_left_out": 1, "assumed": "2 without height: 6 m (--lamp-height), ' out &&
+        grep -q '"inputs": "left out: 2, guessed at: 1: .*not understood' out
+    result $? "nocturne $command tells what its figures rest on"
+done
+expect "--strict refuses lamps that are left out" 1 '1 x lamp more than 2 km outside the city' \
+    influence "$gml" doubtful.csv --crs EPSG:25832 --region point:678020,5403002 --strict
+
 ask --json --region "street:Well Lane" --threads 1 --time 0 && sed 's/"seconds".*//' out >one &&
     ask --json --region "street:Well Lane" --threads 3 --time 0 && sed 's/"seconds".*//' out | cmp -s - one
 result $? "any number of threads gives the same table"
