@@ -154,6 +154,73 @@ static void test_by_value(void **state) {
     lamp_sink_end(&s);
 }
 
+/* A status that is not understood shines, and is told; yes and no count where all of a column are such. */
+static void test_statuses(void **state) {
+    lamp_sink s;
+    read_text(&s,
+              "id,lon,lat,lamp_type,status\na,8,50,LED,Active\nb,8,50.1,LED,Knocked down\nc,8,50.2,LED,burned out\n"
+              "d,8,50.3,LED,in storage\ne,8,50.4,LED,Hors d'usage\nf,8,50.5,LED,hors service\ng,8,50.6,LED,xyz\n"
+              "h,8,50.7,LED,xyz\ni,8,50.8,LED,N\nj,8,50.9,LED,0\nk,8,51,LED,\nl,8,51.1,LED,en service\n",
+              NULL, false);
+    assert_int_equal(s.lamps.len, 7);
+    assert_string_equal(issues_of(&s), "5 x lamp not in use (removed, disused or planned) (b, c, d, e, f)\n"
+                                       "2 x status of a lamp not understood, taken as in use: \"xyz\" (g)\n"
+                                       "1 x status of a lamp not understood, taken as in use: \"N\" (i)\n"
+                                       "1 x status of a lamp not understood, taken as in use: \"0\" (j)\n");
+    lamp_sink_end(&s);
+    read_text(&s, "id,lon,lat,lamp_type,status\na,8,50,LED,Y\nb,8,50.1,LED,N\nc,8,50.2,LED,\n", NULL, false);
+    assert_int_equal(s.lamps.len, 2);
+    assert_string_equal(issues_of(&s), "1 x lamp not in use (removed, disused or planned) (b)\n");
+    lamp_sink_end(&s);
+    read_text(&s, "id,lon,lat,lamp_type,status\na,8,50,LED,1\nb,8,50.1,LED,0\n", NULL, false);
+    assert_int_equal(s.lamps.len, 1);
+    assert_int_equal(issue_count(&s, "status of a lamp by 0 and 1, where 0 is taken as not in use: \"1\""), 1);
+    lamp_sink_end(&s);
+#if NOC_HAVE_GDAL
+    /* of a map's layer too */
+    lamp_sink_start(&s);
+    const char *map =
+        write_file("status.geojson",
+                   "{\"type\": \"FeatureCollection\", \"features\": ["
+                   "{\"type\": \"Feature\", \"properties\": {\"lamp_type\": \"LED\", \"wattage\": 40, "
+                   "\"status\": \"Y\"}, \"geometry\": {\"type\": \"Point\", \"coordinates\": [8, 50]}},"
+                   "{\"type\": \"Feature\", \"properties\": {\"lamp_type\": \"LED\", \"wattage\": 40, "
+                   "\"status\": \"N\"}, \"geometry\": {\"type\": \"Point\", \"coordinates\": [8, 51]}}]}");
+    assert_int_equal(read_lamps(&s, map, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    lamp_sink_end(&s);
+#endif
+}
+
+/* Columns that say how far lamps are dimmed, whatever they are called, and numbers that may count LEDs. */
+static void test_dimming(void **state) {
+    static const char *const columns[] = { "Dimmung", "dimming", "dim_level", "Dimmer", "DIM_PROFILE" };
+    lamp_sink s;
+    for (size_t i = 0; i < NOC_COUNT(columns); i++) {
+        char text[400];
+        snprintf(text, sizeof(text),
+                 "id,lon,lat,lamp_type,watts,%s\na,8,50,LED,60,50%%\nb,8,50.1,LED,60,50%%\nc,8,50.2,LED,60,100 %%\n"
+                 "d,8,50.3,LED,60,no\ne,8,50.4,LED,60,\n",
+                 columns[i]);
+        read_text(&s, text, NULL, false);
+        assert_int_equal(s.lamps.len, 5);
+        assert_string_equal(issues_of(&s),
+                            "2 x dimming or share of a lamp not taken: it is at its full flux: \"50%\" (a)\n");
+        lamp_sink_end(&s);
+    }
+    read_text(&s, "id,lon,lat,lamp_type,watts,dimmable,dimensions\na,8,50,LED,60,yes,50x20\n", NULL, false);
+    assert_string_equal(issues_of(&s), "");
+    lamp_sink_end(&s);
+    read_text(&s,
+              "id,lon,lat,lamp_type,watts\na,8,50,48 LED,\nb,8,50.1,LED 24,\nc,8,50.2,LED 24 W,\nd,8,50.3,LED,24\n"
+              "e,8,50.4,HPS 70,\n",
+              NULL, false);
+    assert_float_equal(lamp_by_id(&s, "a")->watts, 48, 0);
+    assert_string_equal(issues_of(&s), "1 x number beside LED without a unit, taken as watts: \"48 LED\" (a)\n"
+                                       "1 x number beside LED without a unit, taken as watts: \"LED 24\" (b)\n");
+    lamp_sink_end(&s);
+}
+
 /* A table of nothing but descriptions is one of lamps where half of its rows have some. */
 static void test_described(void **state) {
     lamp_sink s;
@@ -289,6 +356,8 @@ int main(void) {
         cmocka_unit_test(test_descriptions),
         cmocka_unit_test(test_columns),
         cmocka_unit_test(test_by_value),
+        cmocka_unit_test(test_statuses),
+        cmocka_unit_test(test_dimming),
         cmocka_unit_test(test_described),
         cmocka_unit_test(test_directions),
         cmocka_unit_test(test_heads),

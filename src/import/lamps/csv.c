@@ -299,6 +299,7 @@ static noc_status find_decimal_sign(csv *c, columns *cols) {
         for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++) {
             tags[i].value = csv_field(c, i);
             lamp_keys_weigh(cols->keys, &tags[i]);
+            lamp_keys_flag(cols->keys, &tags[i]);
         }
     free(tags);
     return status ? status : read_header(c, cols);

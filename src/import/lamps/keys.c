@@ -214,6 +214,7 @@ typedef struct key {
     bool placed;         /* places were read from it */
     bool understood;     /* sources were */
     bool described;      /* descriptions were, though it is called otherwise */
+    bool yes, no, other; /* values of a column of status: yes and no, and what is neither */
     bool asked;          /* by conditions: */
     uint64_t conditions[GEO_CONDITIONS / 64];
     bool noted; /* belongs into the table of columns; the others were only asked for */
@@ -378,6 +379,17 @@ char lamp_keys_decimal(const lamp_keys *keys) {
 
 static key *get_tag(lamp_keys *keys, const lamp_tag *tag) {
     return tag->known ? &keys->keys.data[tag->known - 1] : get(keys, tag->key);
+}
+
+void lamp_keys_flag(lamp_keys *keys, const lamp_tag *tag) {
+    key *k = keys && !lamp_blank(tag->value) ? get_tag(keys, tag) : NULL;
+    if (!k || k->meaning.field != LAMP_FIELD_STATUS)
+        return;
+    bool flag = lamp_is_flag(tag->value);
+    k->yes = k->yes || (flag && lamp_yes_or_no(tag->value) > 0);
+    k->no = k->no || (flag && lamp_yes_or_no(tag->value) < 0);
+    k->other = k->other || !flag;
+    k->meaning.flags = k->yes && k->no && !k->other;
 }
 
 void lamp_keys_unread(lamp_keys *keys, const char *reason, const char *text, const lamp_tag *column, const char *id,

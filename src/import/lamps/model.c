@@ -277,6 +277,7 @@ static void read_watts(const tokens *t, size_t i, size_t next, const lamp_number
     m->watts = n->value * (chips && times ? times : 1);
     m->heads = chips ? 0 : times;
     m->terms = n->terms;
+    m->bare = bare && m->source == GEO_SOURCE_LED && !watts_column;
     m->choice = n->choice;
     m->unit = unit;
     m->clear_unit = unit && (!strncmp(t->list[next - 1].word, "wat", 3) || next == t->count);

@@ -58,6 +58,8 @@ static void doubt(const reading *r, const reasons *of, lamp_choice choice, const
         unread(r, of->choice[choice], text);
 }
 
+static const char dimming_reason[] = "dimming or share of a lamp not taken: it is at its full flux";
+
 /* A quantity in its plausible range; 0 stands for "not known" in many tables, and is counted. True if *out was set. */
 static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const reasons *of,
                           double *out) {
@@ -190,6 +192,8 @@ static void take_model(reading *r, const char *text, const lamp_model *m) {
         r->times = m->heads;
     if (!watts && isfinite(m->watts)) {
         doubt(r, &watts_reasons, m->choice, text);
+        if (m->bare)
+            unread(r, "number beside LED without a unit, taken as watts", text);
         r->terms = m->terms;
         lamp->watts = m->watts;
     }
@@ -207,7 +211,7 @@ static void take_model(reading *r, const char *text, const lamp_model *m) {
 static void doubt_flux(const reading *r, const char *text, const lamp_model *m, bool share) {
     const geo_lamp *lamp = r->lamp;
     if (m->dimmed || (m->share && share))
-        unread(r, "dimming or share of a lamp not taken: it is at its full flux", text);
+        unread(r, dimming_reason, text);
     if (m->diodes && !isfinite(lamp->watts) && !isfinite(lamp->lumens))
         unread(r, "LEDs by their number or current, without watts: flux not understood", text);
 }
@@ -279,6 +283,29 @@ static void read_models(reading *r, const said *all, size_t count, int ranks, co
                   strange->meaning.field == LAMP_FIELD_TYPE ? strange->tag : NULL);
 }
 
+/* Of columns that say how far a lamp is dimmed: full light and "no" are none. */
+static void read_dimming(const reading *r, const lamp_tag *tags, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double number;
+        if (!lamp_tag_meaning(r->keys, &tags[i]).dims || lamp_blank(tags[i].value) ||
+            lamp_yes_or_no(tags[i].value) < 0 || (lamp_scan_number(tags[i].value, false, 0, &number) && number == 100))
+            continue;
+        unread(r, dimming_reason, tags[i].value);
+        return;
+    }
+}
+
+/* A status that says neither that the lamp is in use nor that it is not. */
+static void read_status(const reading *r, const lamp_meaning *m, const char *text) {
+    double number;
+    if (m->role == LAMP_ROLE_GONE)
+        return;
+    if (lamp_status_of(m, text) == LAMP_STATUS_UNTOLD)
+        unread(r, "status of a lamp not understood, taken as in use", text);
+    else if (m->flags && m->rank >= 0 && noc_parse_double(text, &number))
+        unread(r, "status of a lamp by 0 and 1, where 0 is taken as not in use", text);
+}
+
 /* A column of yes and no that says neither, nor anything of a lamp, is told of: there is taken to be one. */
 static void read_doubts(const reading *r, const lamp_tag *tags, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -320,6 +347,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     case LAMP_FIELD_TYPE:
         return read_type(r, text, c->rank < 4); /* a bare "type" may be the pole's: of it only a source is believed */
     case LAMP_FIELD_MOUNT: return read_mount(r, text);
+    case LAMP_FIELD_STATUS: read_status(r, c, text); return false; /* each of several is asked */
     case LAMP_FIELD_ID: lamp->id = text; return true;
     case LAMP_FIELD_ELEVATION:
         if (!lamp_coordinate(text, &x) || !(fabs(x * c->scale) < 9000))
@@ -378,6 +406,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                 lamp->ref = all[i].value;
     read_models(&r, all, n, ranks, tags, count);
     read_doubts(&r, tags, count);
+    read_dimming(&r, tags, count);
     if (all != few)
         free(all);
     lamp_keys_ask(keys, tags, count, lamp);

@@ -71,6 +71,8 @@ typedef struct lamp_meaning {
     lamp_asks asks;
     bool makes;     /* a key of tags that make a lamp (highway, man_made, ...) */
     bool unnamed;   /* a column of a table without a header, which is not mapped: its values alone tell of it */
+    bool flags;     /* of a column of status: all its values are yes and no, or 0 and 1, and it has both */
+    bool dims;      /* tells how far a lamp is dimmed */
     bool free_text; /* says nothing of lamps by its name, and its values may: lamp_model_stands_alone */
     unsigned after; /* such a key begins there, after a lifecycle prefix ("disused:"); 0: none */
 } lamp_meaning;
@@ -122,6 +124,7 @@ typedef struct lamp_model {
     int clear;             /* how much a name of its source means that: 0 to 2 */
     bool unclear;          /* LAMP_SOURCES_DIFFER */
     bool strange;          /* it names no source, and has words that are not understood: "BF 125W" */
+    bool bare;             /* the watts are a number beside LED, which may count its LEDs: "48 LED" */
     bool diodes;           /* its LEDs by number and current, no watts: "48 LED 350mA" */
     bool dimmed, share;    /* it says that the lamp is dimmed; it has a number of % */
     bool plain;            /* it is the name of a source, with watts or without, and nothing else */
@@ -145,6 +148,8 @@ lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag); /* keys may
 /* The file's decimal sign, by the numbers in its columns of places and quantities: '.' or ','; 0 where they disagree or
  * do not tell. */
 void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag);
+/* Looks at a value of a column of status, before any is read: lamp_meaning.flags. keys may be NULL. */
+void lamp_keys_flag(lamp_keys *keys, const lamp_tag *tag);
 char lamp_keys_decimal(const lamp_keys *keys); /* keys may be NULL */
 /* Asks what params' rules and groups want to know of the tags of a lamp (geo_lamp.holds, tells_street), and keeps the
  * tags themselves until the next lamp where params ask for them (geo_lamp.tags); keys may be NULL: none. */
@@ -341,6 +346,10 @@ int lamp_source_word(const char *folded);
 int lamp_type_word(const char *folded);  /* geo_lamp.type */
 int lamp_mount_word(const char *folded); /* geo_lamp.mount */
 bool lamp_inactive_word(const char *folded);
+typedef enum lamp_status { LAMP_STATUS_UNTOLD, LAMP_STATUS_IN_USE, LAMP_STATUS_NOT } lamp_status;
+/* What a value of a column of status says (status.c). */
+lamp_status lamp_status_of(const lamp_meaning *meaning, const char *value);
+bool lamp_is_flag(const char *value);      /* yes or no in any language, 0 or 1 */
 bool lamp_absent_word(const char *folded); /* "no light", "pole only" */
 /* Kelvin for words of white and of sodium light, linear Rec.709 for others. */
 bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);

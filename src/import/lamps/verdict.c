@@ -162,6 +162,20 @@ static bool is_free(const char *folded) {
     return !strstr(folded, "street") || strstr(folded, "light") || strstr(folded, "lamp");
 }
 
+/* Columns of how far a lamp is dimmed; not of whether it could be. */
+static bool is_dimming(const char *folded) {
+    static const char *const parts[] = { "dimm",      "dimlevel", "dimpercent", "dimpct",   "dimprofi",
+                                         "dimregime", "dimvalue", "dimstand",   "dimstufe", "dimfactor",
+                                         "dimsched",  "dimcurve", "absenkung",  "gradatio", "abaissement" };
+    static const char *const ability[] = { "able", "ability", "bar", "baar" };
+    bool is = false;
+    for (size_t i = 0; i < NOC_COUNT(parts); i++)
+        is = is || strstr(folded, parts[i]);
+    for (size_t i = 0; i < NOC_COUNT(ability); i++)
+        is = is && !strstr(folded, ability[i]);
+    return is;
+}
+
 void lamp_roles_of(const char *key, lamp_meaning *m) {
     static const struct {
         const char *folded;
@@ -220,6 +234,7 @@ void lamp_roles_of(const char *key, lamp_meaning *m) {
     lamp_fold(key, false, folded, sizeof(folded));
     m->role = LAMP_ROLE_NONE;
     m->asks = asks_of(folded);
+    m->dims = !m->field && is_dimming(folded);
     m->free_text = !m->field && !m->makes && !m->after && is_free(folded);
     for (size_t i = 0; i < NOC_COUNT(roles); i++) {
         bool tag = roles[i].role <= LAMP_ROLE_LOCATION; /* of OpenStreetMap: as it is written */
@@ -236,11 +251,6 @@ static int says_lamp(const lamp_meaning *m, const char *v) {
                : lamp_yes_or_no(v);
 }
 
-/* "No" is one for a column that the user names as status; of others codes of one letter and numbers say too little. */
-static bool status_is_no(const lamp_meaning *m, const char *v) {
-    return is_no(v) && (m->rank < 0 || (strlen(v) > 1 && !strpbrk(v, "0123456789")));
-}
-
 /* What a tag of a lamp says about whether it shines on a street. */
 static lamp_verdict tag_verdict(const lamp_meaning *m, const char *v) {
     char folded[128];
@@ -252,7 +262,7 @@ static lamp_verdict tag_verdict(const lamp_meaning *m, const char *v) {
             return LAMP_ABSENT;
     }
     if (m->field == LAMP_FIELD_STATUS && m->role != LAMP_ROLE_GONE)
-        return lamp_inactive_word(folded) || status_is_no(m, v) ? LAMP_INACTIVE : LAMP_ACTIVE;
+        return lamp_status_of(m, v) == LAMP_STATUS_NOT ? LAMP_INACTIVE : LAMP_ACTIVE;
     switch (m->role) {
     case LAMP_ROLE_GONE: return is_no(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
     case LAMP_ROLE_INDOORS: return is_no(v) ? LAMP_ACTIVE : LAMP_INDOORS;

@@ -426,6 +426,29 @@ static noc_status read_kinds(map_reading *m, OGRLayerH layer) {
     return kept ? NOC_OK : map_no_memory(m);
 }
 
+/* Looks at the first values of columns of status, where the layer has one. */
+static noc_status read_statuses(map_reading *m, OGRLayerH layer) {
+    enum { FEATURES = 1000 };
+    OGRFeatureDefnH defn = gdal.OGR_L_GetLayerDefn(layer);
+    OGRFeatureH feature;
+    bool any = false, kept = true;
+    for (int i = 0; i < gdal.OGR_FD_GetFieldCount(defn) && !any; i++) {
+        const char *name = gdal.OGR_Fld_GetNameRef(gdal.OGR_FD_GetFieldDefn(defn, i));
+        any = lamp_keys_meaning(m->writer.keys, name).field == LAMP_FIELD_STATUS;
+    }
+    if (!any)
+        return NOC_OK;
+    gdal.OGR_L_ResetReading(layer);
+    for (int n = 0; n < FEATURES && kept && (feature = gdal.OGR_L_GetNextFeature(layer)); n++) {
+        kept = map_collect_fields(feature, defn, false, &m->tags);
+        for (size_t i = 0; i < m->tags.tags.len && kept; i++)
+            lamp_keys_flag(m->writer.keys, &m->tags.tags.data[i]);
+        gdal.OGR_F_Destroy(feature);
+    }
+    gdal.OGR_L_ResetReading(layer);
+    return kept ? NOC_OK : map_no_memory(m);
+}
+
 /* What tells that a layer's points are lamps: the user, tags, columns, values, or nothing. */
 static noc_status judge(map_reading *m, OGRLayerH layer) {
     bool tags;
@@ -441,6 +464,8 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
         w->inventory = w->kinds.any || w->kinds.models;
         w->strange = !w->inventory;
     }
+    if (!status && w->inventory && m->format->kind != MAP_OSM)
+        status = read_statuses(m, layer);
     return status;
 }
 

@@ -1,0 +1,163 @@
+/* What values of a column of status say: a lamp is in use, or it is not, or they are not understood. */
+#include "import/lamps/tags.h"
+
+/* Words of lamps that shine, and of their condition, which says nothing against that. */
+static const char *const in_use[] = {
+    "active",
+    "activated",
+    "operational",
+    "operating",
+    "in operation",
+    "in service",
+    "in use",
+    "used",
+    "working",
+    "works",
+    "functional",
+    "functioning",
+    "functions",
+    "live",
+    "lit",
+    "energized",
+    "energised",
+    "enabled",
+    "existing",
+    "exists",
+    "installed",
+    "in place",
+    "built",
+    "as built",
+    "present",
+    "current",
+    "commissioned",
+    "maintained",
+    "normal",
+    "complete",
+    "completed",
+    "accepted",
+    "inspected",
+    "verified",
+    "valid",
+    "good",
+    "very good",
+    "excellent",
+    "fair",
+    "average",
+    "poor",
+    "bad",
+    "new",
+    "old",
+    "ok",
+    "okay",
+    "permanent",
+    "renewed",
+    "damaged",
+    "replaced",
+    "repaired",
+    "aktiv*",
+    "in betrieb",
+    "in funktion",
+    "funktionsfahig",
+    "funktioniert",
+    "in ordnung",
+    "bestand",
+    "bestehend",
+    "vorhanden",
+    "gebaut",
+    "errichtet",
+    "gut",
+    "sehr gut",
+    "mittel",
+    "massig",
+    "schlecht",
+    "neu",
+    "alt",
+    "beschadigt",
+    "beschaedigt",
+    "actief",
+    "in gebruik",
+    "in bedrijf",
+    "in werking",
+    "aanwezig",
+    "bestaand",
+    "goed",
+    "matig",
+    "redelijk",
+    "slecht",
+    "nieuw",
+    "actif",
+    "active",
+    "en service",
+    "en fonctionnement",
+    "en exploitation",
+    "en usage",
+    "existant*",
+    "bon",
+    "moyen",
+    "mauvais",
+    "neuf",
+    "activ*",
+    "en servicio",
+    "en uso",
+    "operativ*",
+    "funciona",
+    "existente",
+    "instalad*",
+    "bueno",
+    "regular",
+    "malo",
+    "nuevo",
+    "attiv*",
+    "in servizio",
+    "in uso",
+    "in esercizio",
+    "funzionante",
+    "esistente",
+    "buono",
+    "discreto",
+    "ativ*",
+    "em servico",
+    "em uso",
+    "em funcionamento",
+    "bom",
+    "aktivni",
+    "v provozu",
+    "funkcni",
+    "stavajici",
+    "dobry",
+    "aktywn*",
+    "czynn*",
+    "w uzyciu",
+    "istniejac*",
+    "i drift",
+    "i bruk",
+    "bra",
+    "kaytossa",
+    "toiminnassa",
+    "hyva",
+};
+
+/* A code of one letter, or a number: it tells where all of its column are such ones. */
+static bool is_code(const char *value) { return strlen(value) < 2 || strpbrk(value, "0123456789"); }
+
+bool lamp_is_flag(const char *value) {
+    double number;
+    return noc_parse_double(value, &number) ? number == 0 || number == 1 : lamp_yes_or_no(value) != 0;
+}
+
+lamp_status lamp_status_of(const lamp_meaning *m, const char *value) {
+    char folded[128];
+    int flag = lamp_yes_or_no(value);
+    lamp_fold(value, true, folded, sizeof(folded));
+    if (lamp_inactive_word(folded))
+        return LAMP_STATUS_NOT;
+    if (flag < 0 && (m->rank < 0 || m->flags || !is_code(value)))
+        return LAMP_STATUS_NOT;
+    if (flag > 0 && (m->rank < 0 || m->flags || !is_code(value)))
+        return LAMP_STATUS_IN_USE;
+    lamp_text text = lamp_text_of(folded);
+    for (size_t i = 0; i < NOC_COUNT(in_use); i++)
+        if (lamp_has_word(&text, in_use[i]))
+            return LAMP_STATUS_IN_USE;
+    return LAMP_STATUS_UNTOLD;
+}
