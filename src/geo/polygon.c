@@ -438,9 +438,10 @@ static bool triangulate(struct work *w, const float *uv, geo_triangles *out) {
         if (!t.ok || out->indices.len == first_index) {
             if (!t.no_memory)
                 geo_issue(w->issues, t.ok && !t.tangled ? GEO_SPARED : GEO_SKIPPED,
-                          t.tangled ? "polygon that crosses itself more than 1000 times"
-                          : t.ok    ? "polygon without area"
-                                    : "polygon that cannot be triangulated",
+                          t.tangled
+                              ? "polygon that crosses itself more than 1000 times, or more often than it has points"
+                          : t.ok ? "polygon without area"
+                                 : "polygon that cannot be triangulated",
                           w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;

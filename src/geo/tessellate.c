@@ -96,29 +96,32 @@ static bool cross_properly(const edge *e, const edge *f) {
     return side(e->a, e->b, f->a) * side(e->a, e->b, f->b) < 0 && side(f->a, f->b, e->a) * side(f->a, f->b, e->b) < 0;
 }
 
-#define FEW_POINTS 100 /* that many cannot cross often enough to matter */
-#define MANY_CROSSINGS 1000
-#define PAIR_BUDGET 20000000 /* pairs of edges that are looked at; the rest is extrapolated */
+#define MANY_CROSSINGS 1000  /* of a polygon; and no more than */
+#define FEW_CROSSINGS 10     /* or than it has points: each becomes a vertex and triangles of its own */
+#define PAIRS_A_POINT 1000   /* of edges that are looked at; the rest is extrapolated */
+#define PAIR_BUDGET 20000000 /* the same, of a polygon */
+#define TOO_FEW_POINTS 6     /* to cross more often than that: a ring of six points has nine pairs of edges apart */
 
 /* Each crossing costs the tessellator time that grows with the number of edges: a ring of a few thousand random points
- * takes minutes. */
+ * takes minutes. And many small rings whose edges all cross are as many triangles as the square of their points. */
 static bool crosses_too_often(struct job *job, const double *uv, const size_t *ring_size, size_t ring_count,
                               size_t points) {
-    if (points < FEW_POINTS)
+    if (points <= TOO_FEW_POINTS)
         return false;
     edge *edges = noc_alloc(points * sizeof(*edges));
     if (!edges) {
         refuse(job);
         return false;
     }
-    size_t n = 0, limit = MANY_CROSSINGS, crossings = 0, pairs = 0, i = 0;
+    size_t n = 0, crossings = 0, pairs = 0, i = 0, most_pairs = NOC_MIN(PAIRS_A_POINT * points, (size_t)PAIR_BUDGET);
+    size_t limit = NOC_CLAMP(points, (size_t)FEW_CROSSINGS, (size_t)MANY_CROSSINGS);
     for (size_t r = 0; r < ring_count; uv += 2 * ring_size[r++])
         for (size_t k = 0; k < ring_size[r]; k++) {
             const double *a = uv + 2 * k, *b = uv + 2 * ((k + 1) % ring_size[r]);
             edges[n++] = (edge){ NOC_MIN(a[0], b[0]), a, b };
         }
     qsort(edges, n, sizeof(*edges), by_lo);
-    for (; i < n && crossings <= limit && pairs < PAIR_BUDGET; i++) {
+    for (; i < n && crossings <= limit && pairs < most_pairs; i++) {
         double hi = NOC_MAX(edges[i].a[0], edges[i].b[0]);
         for (size_t j = i + 1; j < n && edges[j].lo <= hi; j++, pairs++)
             crossings += cross_properly(&edges[i], &edges[j]);
