@@ -153,6 +153,54 @@ static void test_city_in_metres(void **state) {
 }
 
 /* A guess, so that --strict refuses it. */
+/* Blocks of a city, and whether their faces look outwards as the file has them; the last ones look inwards. */
+static const char *blocks(const char *name, size_t count, size_t inwards, bool open) {
+    char text[16000];
+    size_t n = (size_t)snprintf(text, sizeof(text), "FAKE city\ncrs EPSG:4326\n");
+    for (size_t b = 0; b < count; b++) {
+        static const int faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 },
+                                         { 1, 3, 7, 5 }, { 3, 2, 6, 7 }, { 2, 0, 4, 6 } };
+        n += (size_t)snprintf(text + n, sizeof(text) - n, "object 0 block%zu 1\n", b);
+        for (int f = open; f < 6; f++) {
+            n += (size_t)snprintf(text + n, sizeof(text) - n, "polygon %d", f == 0 ? 3 : f == 1 ? 2 : 1);
+            for (int i = 0; i < 4; i++) {
+                int c = faces[f][b >= count - inwards ? 3 - i : i];
+                n += (size_t)snprintf(text + n, sizeof(text) - n, " %.7f %.7f %d", TOWN_Y + (c >> 1 & 1) * FEW,
+                                      TOWN_X + (double)b * 3 * FEW + (c & 1) * FEW, (c >> 2) * 8);
+            }
+            n += (size_t)snprintf(text + n, sizeof(text) - n, "\n");
+        }
+        n += (size_t)snprintf(text + n, sizeof(text) - n, "end\n");
+    }
+    return file(name, text);
+}
+
+/* Where city and lamps are exchanged alike, or the city is alone, its faces alone tell it. */
+static void test_mirrored(void **state) {
+    static const struct {
+        size_t count, inwards, lines;
+        bool open;
+    } rows[] = { { 3, 3, 3, false }, { 3, 0, 0, false }, { 3, 2, 0, false },
+                 { 3, 3, 0, true },  { 2, 2, 0, false }, { 12, 11, 11, false } };
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++)
+        for (int strict = 0; strict < 2; strict++) {
+            struct run r;
+            noc_import_params params = DEFAULTS;
+            params.strict = strict;
+            params.lamp_chosen = ~0u;
+            LOAD(&r, params, blocks("blocks.city", rows[i].count, rows[i].inwards, rows[i].open), lamps_of("1", false));
+            const noc_report_file *f = noc_report_get_file(r.report, 0);
+            assert_int_equal(r.status, strict && rows[i].lines ? NOC_ERR_FORMAT : NOC_OK);
+            if (rows[i].lines)
+                assert_true(
+                    has_line(f, "building whose faces look inwards, as those of a mirrored city do", rows[i].lines));
+            bool told = strstr(r.last_warning, "look inwards");
+            assert_int_equal(told, strict ? told : rows[i].lines > 0);
+            finish(&r);
+        }
+}
+
 static void test_strict(void **state) {
     (void)state;
     struct run r;
@@ -168,6 +216,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_city_or_lamps), cmocka_unit_test(test_no_faces),       cmocka_unit_test(test_three),
         cmocka_unit_test(test_two_exchanged), cmocka_unit_test(test_city_in_metres), cmocka_unit_test(test_strict),
+        cmocka_unit_test(test_mirrored),
     };
     return cmocka_run_group_tests_name("import/axes", tests, make_folder, remove_folder);
 }

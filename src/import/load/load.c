@@ -352,6 +352,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     if (!status)
         status = units_check(im);
     if (!status)
+        status = faces_check(im);
+    if (!status)
         given_crs_warn(im);
     if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len && !im->roads.len)
         status =

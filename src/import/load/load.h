@@ -34,6 +34,13 @@ typedef struct building_size {
     float storey;        /* 0: unset */
 } building_size;
 
+/* Faces of the building that is being taken: their vector area and area, both doubled, volume and bounds, m from the
+ * first corner (faces.c). */
+typedef struct building_faces {
+    bool any;
+    double origin[3], sum[3], area, volume, lo[3], hi[3];
+} building_faces;
+
 /* A lamp of a file that is looked at and not drawn. */
 typedef struct seen_lamp {
     double xy[2]; /* local metres */
@@ -72,6 +79,8 @@ typedef struct input {
     /* the scene's side: what is found as parts are taken, and the object that is being taken */
     geo_issues *found;
     bool object_begun, object_decided, object_repeated;
+    building_faces faces;
+    size_t outwards, inwards; /* buildings whose faces close a space and look so */
 } input;
 
 typedef struct pending_lamp {
@@ -452,6 +461,11 @@ noc_status units_check_buildings(importer *im);
 noc_status units_check_terrain(importer *im); /* once all surfaces are in */
 /* Returns true if the input names a CRS in feet, or lies in the United States or Canada. */
 bool units_of_feet(const source_crs *source, const double xy[2]);
+
+/* faces.c: warns, and counts as guessed at, where the faces of nearly all closed buildings of a file look inwards. */
+void faces_add(building_faces *f, const part_surface *surface);
+void faces_end(input *in); /* of a building */
+noc_status faces_check(importer *im);
 
 /* units.c: warns where lamps hang higher than they do in their part of the world, and counts them as guessed at; then
  * of buildings. */

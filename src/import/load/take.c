@@ -128,6 +128,8 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
         status = repeat_object(im, in, now, id);
     for (size_t i = 0; i < part->u.object.surface_count && !status && !in->object_repeated; i++) {
         status = take_surface(im, in, id, &part->u.object.surfaces[i]);
+        if (now->kind == GEO_BUILDING)
+            faces_add(&in->faces, &part->u.object.surfaces[i]);
         bool ground = part->u.object.surfaces[i].cls == NOC_CLASS_GROUND;
         if (!status && ground && now->kind != GEO_BUILDING)
             im->scene->meshes.data[im->scene->meshes.len - 1].land = true;
@@ -137,6 +139,7 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     for (int c = 0; c < NOC_CLASS_COUNT && !in->object_repeated; c++)
         in->file.polygons_by_class[c] += now->by_class[c];
     in->file.polygons += in->object_repeated ? 0 : now->polygons;
+    faces_end(in);
     if (!in->object_repeated && !units_see_building(im, in, now))
         return noc_no_memory(im->log, in->path);
     if (now->kind == GEO_BUILDING && im->object_mesh < im->scene->meshes.len && im->params->windows != NOC_SWITCH_OFF &&
