@@ -12,8 +12,7 @@ typedef struct build {
     noc_clusters *c;
     int half;
     size_t lights;               /* that may be of the half: those of the scene, or those that move */
-    noc_light_bound *bounds;     /* of each of these */
-    noc_light_key *keys, *spare; /* lights of the half in the order of the curve; id: place among these */
+    noc_light_key *keys, *spare; /* lights of the half in the order of the curve; id: their numbers in the scene */
     uint32_t *first;             /* a cluster: its first key; one more at the end */
     size_t items, count;
     float lo[3], scale, reach;
@@ -90,19 +89,18 @@ static float strength_of(const noc_scene *scene, uint32_t light) {
     return profile && l->area > 0 ? peak * (scene->profiles.data[profile - 1].strength / l->area) : peak;
 }
 
-static void bound_light(build *b, size_t i) {
-    uint32_t light = light_of(b, i);
-    b->bounds[i] = noc_bound_light(&b->scene->lights.data[light]);
-    b->bounds[i].intensity = strength_of(b->scene, light);
+/* Made anew each time: those of all lights would take more memory than what is made of them. */
+static noc_light_bound bound_of(const build *b, uint32_t light) {
+    return noc_bound_light(&b->scene->lights.data[light]);
 }
 
 /* By the way they face, then along the curve: groups of any level face alike. */
 static void make_key(build *b, size_t i) {
-    const noc_light_bound *l = &b->bounds[b->keys[i].id];
+    const noc_light_bound l = bound_of(b, b->keys[i].id);
     uint32_t x[3];
     for (int k = 0; k < 3; k++)
-        x[k] = (uint32_t)NOC_CLAMP((l->p[k] - b->lo[k]) * b->scale, 0, (float)((1 << CURVE_BITS) - 1));
-    b->keys[i].key = (uint64_t)face(l->n) << (3 * CURVE_BITS) | hilbert(x);
+        x[k] = (uint32_t)NOC_CLAMP((l.p[k] - b->lo[k]) * b->scale, 0, (float)((1 << CURVE_BITS) - 1));
+    b->keys[i].key = (uint64_t)face(l.n) << (3 * CURVE_BITS) | hilbert(x);
 }
 
 static int by_size(const void *a, const void *b) {
@@ -117,7 +115,7 @@ static void span_lights(build *b) {
     size_t n = NOC_MIN(b->count, (size_t)SAMPLE);
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < n; i++)
-            sample[i] = b->bounds[b->keys[i * b->count / n].id].p[k];
+            sample[i] = bound_of(b, b->keys[i * b->count / n].id).p[k];
         qsort(sample, n, sizeof(*sample), by_size);
         float low = n ? sample[n / 20] : 0, high = n ? sample[n - 1 - n / 20] : 0;
         b->lo[k] = 0.5f * (low + high);
@@ -159,6 +157,7 @@ enum { OPEN = 8, OPEN_FOR = 8 * NOC_CLUSTER_LIGHTS };
 
 typedef struct open_cluster {
     noc_light_key keys[NOC_CLUSTER_LIGHTS];
+    noc_light_bound leads; /* of the first of them */
     uint32_t count;
     size_t since; /* place on the curve of the first one */
 } open_cluster;
@@ -179,14 +178,13 @@ static void close_cluster(gathering *g, open_cluster *c) {
 
 /* The open cluster that light i of the curve belongs into. */
 static open_cluster *cluster_for(const build *b, gathering *g, size_t i) {
-    const noc_light_bound *l = &b->bounds[b->keys[i].id];
+    const noc_light_bound l = bound_of(b, b->keys[i].id);
     open_cluster *oldest = NULL;
     for (int k = 0; k < OPEN; k++) {
         open_cluster *c = &g->open[k];
-        const noc_light_bound *first = &b->bounds[c->keys[0].id];
-        if (c->count && (i - c->since >= OPEN_FOR || !near(b, first, l)))
+        if (c->count && (i - c->since >= OPEN_FOR || !near(b, &c->leads, &l)))
             close_cluster(g, c);
-        if (c->count && alike(first, l))
+        if (c->count && alike(&c->leads, &l))
             return c;
         if (!oldest || !c->count || (oldest->count && c->since < oldest->since))
             oldest = c;
@@ -194,6 +192,7 @@ static open_cluster *cluster_for(const build *b, gathering *g, size_t i) {
     if (oldest->count)
         close_cluster(g, oldest);
     oldest->since = i;
+    oldest->leads = l;
     return oldest;
 }
 
@@ -297,13 +296,13 @@ static void make_cluster(build *b, size_t i) {
     int count = (int)(b->first[i + 1] - b->first[i]), lane = (int)(i % 16);
     for (int j = 0; j < count; j++) {
         uint32_t id = b->keys[b->first[i] + (uint32_t)j].id;
-        const noc_light_bound *l = &b->bounds[id];
-        bool any = face(l->n) == 6;
-        out->id[j] = light_of(b, id);
-        out->shine[j] = half_intensity(l->intensity) | (any ? 0 : octahedron(l->n));
-        parts[j] = (part){ { l->p[0], l->p[1], l->p[2] },
-                           l->radius,
-                           { l->n[0], l->n[1], l->n[2] },
+        const noc_light_bound l = bound_of(b, id);
+        bool any = face(l.n) == 6;
+        out->id[j] = id;
+        out->shine[j] = half_intensity(strength_of(b->scene, id)) | (any ? 0 : octahedron(l.n));
+        parts[j] = (part){ { l.p[0], l.p[1], l.p[2] },
+                           l.radius,
+                           { l.n[0], l.n[1], l.n[2] },
                            any ? -1 : 1,
                            full_intensity(out->shine[j]) };
     }
@@ -347,10 +346,9 @@ static bool allocate(noc_clusters *c, size_t count) {
 }
 
 static bool make_all(build *b, noc_pool *pool) {
-    run(b, pool, b->lights, bound_light);
     for (size_t i = 0; i < b->lights; i++)
         if (noc_light_half(&b->scene->lights.data[light_of(b, i)]) == b->half)
-            b->keys[b->count++].id = (uint32_t)i;
+            b->keys[b->count++].id = light_of(b, i);
     if (!b->count)
         return true;
     sort_lights(b, pool);
@@ -371,15 +369,13 @@ noc_clusters *noc_clusters_create(const noc_scene *scene, int half, noc_pool *po
                 .half = half,
                 .lights = all,
                 .c = noc_calloc(1, sizeof(*b.c)),
-                .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
                 .keys = noc_alloc_large(all, sizeof(*b.keys)),
                 .spare = noc_alloc_large(all, sizeof(*b.spare)) };
-    if (!b.c || !b.bounds || !b.keys || !b.spare || !make_all(&b, pool)) {
+    if (!b.c || !b.keys || !b.spare || !make_all(&b, pool)) {
         noc_error(log, NOC_ERR_MEMORY, "light clusters: no memory for %zu lights", all);
         noc_clusters_destroy(b.c);
         b.c = NULL;
     }
-    free(b.bounds);
     free(b.keys);
     free(b.spare);
     free(b.first);
