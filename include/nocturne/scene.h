@@ -313,7 +313,6 @@ typedef struct noc_window_params {
     double cell;          /* m: width of a window's cell; its height is a storey's */
     double storey_height; /* m */
     double margin;        /* m of wall that must be left around a window */
-    double offset;        /* m: how far before the wall the pane lies */
     double tilt;          /* degrees that a wall may lean */
     double min_area;      /* m2: smaller walls get no windows */
     double kelvin;        /* K: middle colour temperature of flats; shops are 1.2 and offices 1.4 times that */
@@ -323,8 +322,7 @@ typedef struct noc_window_params {
 
 #define NOC_WINDOW_DEFAULTS(set)                                                                                       \
     set(lit_windows, 0.35) set(hour, 21) set(width, 1.2) set(height, 1.4) set(cell, 2.4) set(storey_height, 3)         \
-        set(margin, 0.2) set(offset, 0.03) set(tilt, 10) set(min_area, 10) set(kelvin, 2900) set(spread, 0.15)         \
-            set(seed, 1)
+        set(margin, 0.2) set(tilt, 10) set(min_area, 10) set(kelvin, 2900) set(spread, 0.15) set(seed, 1)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_window_params, noc_window_default_params, NOC_WINDOW_DEFAULTS)
 #else

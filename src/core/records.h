@@ -65,6 +65,19 @@ struct material_record {
     float alpha; /* roughness^2 */
 };
 
+/* A grid of cells on a wall, whose windows have no triangles: core/facade.h. Cell first + j * columns + i of the
+ * scene's is that of column i and row j. */
+struct facade_record {
+    float origin[3]; /* corner of column 0, row 0 */
+    uint32_t first;
+    float along[3]; /* a place p is in column dot(p - origin, along), */
+    uint32_t columns;
+    float up[3]; /* and in row dot(p - origin, up) */
+    uint32_t rows;
+    uint32_t material; /* of the windows */
+    uint32_t mesh;     /* the wall's, whose name they have */
+};
+
 /* Rows of a 3x4 transform: a rotation times a scale, and a translation. */
 struct placement_rows {
     float m[12];
@@ -83,6 +96,7 @@ struct placing_back {
 #if !defined(CORE_GLSL)
 typedef struct light_record light_record;
 typedef struct material_record material_record;
+typedef struct facade_record facade_record;
 typedef struct placing_back placing_back;
 
 #define RECORD_SIZE(type, words) _Static_assert(sizeof(struct type) == 4 * (words), #type " has no gaps")
@@ -108,6 +122,12 @@ RECORD_FIELD(material_record, albedo, 0);
 RECORD_FIELD(material_record, f0, 3);
 RECORD_FIELD(material_record, emission, 4);
 RECORD_FIELD(material_record, alpha, 7);
+
+RECORD_SIZE(facade_record, 14);
+RECORD_FIELD(facade_record, first, 3);
+RECORD_FIELD(facade_record, along, 4);
+RECORD_FIELD(facade_record, up, 8);
+RECORD_FIELD(facade_record, material, 12);
 #endif
 
 #endif

@@ -133,9 +133,10 @@ static void keep_surfaces(const noc_scene *scene, noc_views *v, size_t block, co
         bool some = g->material[l] != NO_SURFACE;
         if (v->kept[NOC_AOV_DEPTH])
             v->kept[NOC_AOV_DEPTH][block][l] = some ? g->depth[l] : -1;
-        if (v->kept[NOC_AOV_CLASS]) { /* a wall's label was gathered */
+        if (v->kept[NOC_AOV_CLASS]) { /* a wall's label was gathered, of the windows in it, too */
             float *label = &v->kept[NOC_AOV_CLASS][block][l];
-            *label = !some ? -1 : *label >= 0 ? *label : (float)scene->materials.data[g->material[l]].cls;
+            noc_class cls = some ? scene->materials.data[g->material[l]].cls : NOC_CLASS_OTHER;
+            *label = !some ? -1 : *label >= 0 && cls != NOC_CLASS_WINDOW ? *label : (float)cls;
         }
         for (int k = 0; v->kept[NOC_AOV_NORMAL] && k < 3; k++)
             v->kept[NOC_AOV_NORMAL][3 * block + (size_t)k][l] = some ? (k == 0 ? g->nx : k == 1 ? g->ny : g->nz)[l] : 0;

@@ -1,6 +1,7 @@
 /* All that is known of what a ray met: noc_hit. */
 #include "core/blocks.h"
 #include "render/backend.h"
+#include "scene/facade.h"
 
 #include <math.h>
 
@@ -70,19 +71,27 @@ void noc_describe_hit(const noc_scene *scene, const noc_ray *ray, const noc_met 
     uint32_t material = scene->triangle_material.data[triangle], light = scene->triangle_light.data[triangle];
     double way[3];
     *out = (noc_hit){ .hit = true,
-                      .cls = scene->materials.data[material].cls,
-                      .material = (int)material,
                       .object = (int)noc_scene_object_of(scene, triangle, instance),
                       .instance = instance < NOC_BODIES ? (int)instance : -1,
                       .light = -1 };
     place(scene, h, out->place, out->normal);
+    const noc_facade_record *facade = instance == NO_INSTANCE ? noc_scene_facade_of(scene, triangle) : NULL;
+    const float at[3] = { (float)out->place[0], (float)out->place[1], (float)out->place[2] };
+    uint32_t window = facade ? noc_facade_light(scene, facade, at) : NOC_NO_LIGHT;
+    if (window != NOC_NO_LIGHT) {
+        material = facade->material;
+        light = window;
+    }
+    out->cls = scene->materials.data[material].cls;
+    out->material = (int)material;
     bool front = out->front = dot(out->normal, ray->direction) < 0;
     for (int k = 0; k < 3; k++) {
         way[k] = out->place[k] - ray->origin[k];
         out->normal[k] *= front ? 1 : -1;
     }
     out->distance = sqrt(dot(way, way));
-    describe_image(scene, h, out);
+    if (window == NOC_NO_LIGHT)
+        describe_image(scene, h, out);
     if (light == NOC_NO_LIGHT)
         return;
     out->light = (int)(instance != NO_INSTANCE ? noc_placed_light(scene, instance, light) : light);

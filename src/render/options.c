@@ -172,7 +172,6 @@ static const noc_option import_options[] = {
     REAL(P, window.cell, "window-cell", "Windows", 0.2, 100, "m", "width of the cell that a window stands in"),
     REAL(P, window.storey_height, "storey-height", "Windows", 1, 50, "m", "height of a storey, and of those cells"),
     REAL(P, window.margin, "window-margin", "Windows", 0, 10, "m", "wall that must be left around a window"),
-    REAL(P, window.offset, "window-offset", "Windows", 0.001, 1, "m", "how far before the wall a pane lies"),
     REAL(P, window.tilt, "window-tilt", "Windows", 0, 45, "degrees", "how far a wall with windows may lean"),
     REAL(P, window.min_area, "window-min-area", "Windows", 0, 1e6, "m2", "smaller walls get no windows"),
     REAL(P, window.kelvin, "window-kelvin", "Windows", 1000, 10000, "K", "middle colour temperature of flats"),

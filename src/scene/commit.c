@@ -1,5 +1,5 @@
 /* Publishing what is staged: all memory is reserved first, and what follows cannot fail. */
-#include "scene/scene.h"
+#include "scene/facade.h"
 
 #include <math.h>
 
@@ -116,6 +116,7 @@ static bool need_edit(const noc_scene *s, noc_edit *e, need *n) {
         return true;
     case NOC_EDIT_REMOVE_MESH:
         n->released_lights += s->meshes.data[e->index].triangle_count;
+        n->released_lights += noc_facade_windows(s, &s->meshes.data[e->index]);
         n->gaps++;
         return true;
     case NOC_EDIT_ADD_INSTANCE:
@@ -364,6 +365,7 @@ static void remove_mesh(commit *c, noc_scene_mesh *m) {
             noc_window_forget(s, light);
         }
     }
+    noc_facades_remove(s, m, &c->changes);
     m->removed = true;
     noc_material_drop(s, m);
     c->changes.geometry = c->changes.mesh_left = c->changes.ground_left = true;

@@ -87,6 +87,19 @@ static content_hash add_meshes(content_hash h, const noc_scene *s, uint32_t mode
     return h;
 }
 
+/* Windows in walls: which grid they are in, what they are of. */
+static content_hash add_windows(content_hash h, const noc_scene *s) {
+    for (size_t i = 0; i < s->windows.len; i++) {
+        const noc_scene_window *w = &s->windows.data[i];
+        if (w->removed || !w->facade)
+            continue;
+        const noc_facade_record *f = &s->facades.data[w->facade - 1];
+        h = add(add_material(h, &s->materials.data[f->material]), f->origin, sizeof(f->origin));
+        h = add_light(h, s->lights.data[w->light]);
+    }
+    return h;
+}
+
 /* Lights that no triangle of the world shows. */
 static bool is_bare(const noc_light_record *r) {
     bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
@@ -133,7 +146,7 @@ void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
     if (!s || !key)
         return;
     noc_scene_lock_read(s);
-    content_hash h = add_meshes(start, s, 0);
+    content_hash h = add_windows(add_meshes(start, s, 0), s);
     for (size_t i = 0; i < s->lights.len; i++)
         if (is_bare(&s->lights.data[i]))
             h = add_light(h, s->lights.data[i]);

@@ -1,5 +1,6 @@
 /* Scenes into one. Meshes, lights and all that stands somewhere are appended, with numbers of the scene that they come
  * to; what follows from them is made in the end. */
+#include "scene/facade.h"
 #include "scene/join.h"
 
 #include <math.h>
@@ -27,6 +28,21 @@ static noc_mesh_choice chosen(const noc_joiner *j, size_t mesh) {
 
 enum { LEFT = NOC_JOIN_NONE, TAKEN = 0 };
 
+/* Windows that lie in a wall that is taken. */
+static void choose_windows(noc_joiner *j, const noc_scene_mesh *m) {
+    const noc_scene *s = j->from;
+    const noc_facade_record *last = NULL;
+    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
+        const noc_facade_record *f = noc_scene_facade_of(s, t);
+        if (f == last)
+            continue;
+        last = f;
+        for (size_t i = 0; f && i < (size_t)f->columns * f->rows; i++)
+            if (s->facade_cells.data[f->first + i] != NOC_NO_LIGHT)
+                j->light[s->facade_cells.data[f->first + i]] = TAKEN;
+    }
+}
+
 /* Lights that come with what is taken. */
 static void choose_lights(noc_joiner *j) {
     const noc_scene *s = j->from;
@@ -40,6 +56,9 @@ static void choose_lights(noc_joiner *j) {
              n && j->mesh[m] == NOC_MESH_TAKE; t++, n--)
             if (s->triangle_light.data[t] != NOC_NO_LIGHT)
                 j->light[s->triangle_light.data[t]] = TAKEN;
+    for (size_t m = 0; m < s->meshes.len; m++)
+        if (j->mesh[m] == NOC_MESH_TAKE)
+            choose_windows(j, &s->meshes.data[m]);
     for (size_t i = 0; i < s->instances.len; i++)
         for (size_t k = 0; j->instance[i] == TAKEN && k < s->models.data[s->instances.data[i].model - 1].lights.len;
              k++)
@@ -109,6 +128,7 @@ static bool join_windows(noc_joiner *j, bool *taken) {
         if (taken)
             taken[i] = there;
         w.light = j->light[w.light];
+        w.facade = w.facade ? j->facade[w.facade - 1] : 0;
         if (there && !array_push(&j->to->windows, w))
             return noc_join_no_memory(j);
     }
@@ -129,6 +149,48 @@ static bool join_walls(noc_joiner *j, const noc_scene_mesh *m) {
         to->walls.data[to->walls.len++] = NOC_WALL_UNSEEN;
     for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++)
         to->walls.data[to->walls.len++] = (uint8_t)noc_scene_wall(j->from, t);
+    return true;
+}
+
+/* A facade with its windows, as part of the mesh that is to come. */
+static bool join_facade(noc_joiner *j, size_t facade) {
+    noc_scene *to = j->to;
+    noc_facade_record f = j->from->facades.data[facade];
+    size_t from = f.first, first = to->facade_cells.len, cells = (size_t)f.columns * f.rows;
+    f.material = noc_join_material(j, f.material);
+    if (f.material == NOC_JOIN_NONE)
+        return false;
+    if (first + cells >= UINT32_MAX || to->facades.len >= INT32_MAX)
+        return noc_join_too_many(j, "facades");
+    move(j, f.origin, f.origin);
+    f.first = (uint32_t)first;
+    f.mesh = (uint32_t)to->meshes.len;
+    if (!array_push(&to->facades, f) || !array_reserve(&to->facade_cells, first + cells))
+        return noc_join_no_memory(j);
+    for (size_t i = from; i < from + cells; i++) {
+        uint32_t light = j->from->facade_cells.data[i];
+        to->facade_cells.data[to->facade_cells.len++] = light == NOC_NO_LIGHT ? light : j->light[light];
+    }
+    j->facade[facade] = (uint32_t)to->facades.len;
+    return true;
+}
+
+/* Facades of walls lie as triangles do, as verdicts do. */
+static bool join_facades(noc_joiner *j, const noc_scene_mesh *m) {
+    noc_scene *to = j->to;
+    size_t first = to->triangle_light.len, end = first + m->triangle_count;
+    if (m->model || m->first_triangle >= j->from->triangle_facade.len)
+        return true;
+    if (!array_reserve(&to->triangle_facade, end))
+        return noc_join_no_memory(j);
+    while (to->triangle_facade.len < first)
+        to->triangle_facade.data[to->triangle_facade.len++] = 0;
+    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
+        uint32_t f = t < j->from->triangle_facade.len ? j->from->triangle_facade.data[t] : 0;
+        if (f && j->facade[f - 1] == NOC_JOIN_NONE && !join_facade(j, f - 1))
+            return false;
+        to->triangle_facade.data[to->triangle_facade.len++] = f ? j->facade[f - 1] : 0;
+    }
     return true;
 }
 
@@ -180,7 +242,8 @@ bool noc_join_mesh(noc_joiner *j, size_t mesh, uint32_t model) {
     const noc_scene_mesh *m = &s->meshes.data[mesh];
     size_t vertices = noc_mesh_end_vertex(s, mesh) - m->first_vertex;
     noc_scene_mesh made;
-    if (!begin_mesh(j, m, model, &made) || !reserve(j, m->triangle_count, vertices, m->uv) || !join_walls(j, m))
+    if (!begin_mesh(j, m, model, &made) || !reserve(j, m->triangle_count, vertices, m->uv) || !join_walls(j, m) ||
+        !join_facades(j, m))
         return false;
     made.triangle_count = m->triangle_count;
     for (size_t v = m->first_vertex; v < m->first_vertex + vertices; v++) {
@@ -363,8 +426,8 @@ static bool blank(uint32_t **numbers, size_t count) {
 }
 
 static void forget(noc_joiner *j) {
-    uint32_t **of[] = { &j->group, &j->profile, &j->texture,  &j->material,  &j->model,     &j->light,
-                        &j->mesh,  &j->route,   &j->instance, &j->next_mesh, &j->model_mesh };
+    uint32_t **of[] = { &j->group, &j->profile, &j->texture,  &j->material,  &j->model,      &j->light,
+                        &j->mesh,  &j->route,   &j->instance, &j->next_mesh, &j->model_mesh, &j->facade };
     for (size_t i = 0; i < NOC_COUNT(of); i++) {
         free(*of[i]);
         *of[i] = NULL;
@@ -376,7 +439,8 @@ static bool begin(noc_joiner *j) {
     bool ok = blank(&j->group, s->groups.len) && blank(&j->profile, s->profiles.len) &&
               blank(&j->texture, s->textures.len) && blank(&j->material, s->materials.len) &&
               blank(&j->model, s->models.len) && blank(&j->light, s->lights.len) && blank(&j->mesh, s->meshes.len) &&
-              blank(&j->route, s->routes.len) && blank(&j->instance, s->instances.len);
+              blank(&j->route, s->routes.len) && blank(&j->instance, s->instances.len) &&
+              blank(&j->facade, s->facades.len);
     j->next_mesh = noc_calloc(s->meshes.len + 1, sizeof(*j->next_mesh));
     j->model_mesh = noc_calloc(s->models.len + 1, sizeof(*j->model_mesh));
     if (!ok || !j->next_mesh || !j->model_mesh)
@@ -415,7 +479,7 @@ noc_status noc_joiner_add(noc_joiner *j, const noc_scene *from, const double shi
         j->status = noc_join_groups(j);
     if (!j->status) {
         choose(j);
-        if (join_lights(j) && join_windows(j, taken) && join_meshes(j) && join_bodies(j) && join_instances(j))
+        if (join_lights(j) && join_meshes(j) && join_windows(j, taken) && join_bodies(j) && join_instances(j))
             join_streets(j);
     }
     forget(j);

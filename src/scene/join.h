@@ -50,6 +50,7 @@ struct noc_joiner {
     noc_status status;                                      /* the first thing that went wrong, reported */
     uint32_t *group, *profile, *texture, *material, *model; /* numbers in `to`; NOC_JOIN_NONE: not asked for yet */
     uint32_t *light, *mesh, *instance, *route;              /* the same; NOC_JOIN_NONE: not taken */
+    uint32_t *facade;                                       /* number + 1 in `to`; NOC_JOIN_NONE: not asked for yet */
     uint32_t *model_mesh, *next_mesh; /* meshes of a model: the first + 1, and of each mesh the next one + 1 */
     size_t cells_left, texels_left, stops_left; /* that none of its tables, textures and routes has taken yet */
     const char *name_before, *kept_before;      /* the last name that was kept */

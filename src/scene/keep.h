@@ -59,6 +59,10 @@ noc_status noc_kept_classes(noct_file *f, noc_scene *s);
 void noc_keep_meshes(noct_writer *w, const noc_scene *s);
 noc_status noc_kept_meshes(noct_file *f, noc_scene *s);
 
+/* keep_facades.c: behind windows and meshes. */
+void noc_keep_facades(noct_writer *w, const noc_scene *s);
+noc_status noc_kept_facades(noct_file *f, noc_scene *s);
+
 /* When all is read: makes what is not kept as it follows from the rest. The scene is committed then. */
 noc_status noc_kept_done(noct_file *f, noc_scene *s);
 /* After an error, and in the end: the scene takes the file's bytes, which its arrays may lie in. */

@@ -102,52 +102,29 @@ noc_status noc_kept_lights(noct_file *f, noc_scene *s) {
 
 /* ---- windows ---- */
 
-typedef struct kept_window {
-    uint32_t light;
-    float emission[3], level;
-    uint32_t kind, flags, often;
-} kept_window;
-enum { WINDOW_REMOVED = 1, WINDOW_PART = 2, WINDOW_FLAGS = 3 };
-
 void noc_keep_windows(noct_writer *w, const noc_scene *s) {
-    noct_begin(w, "windows");
-    for (size_t i = 0; i < s->windows.len; i++) {
-        const noc_scene_window *v = &s->windows.data[i];
-        kept_window k = { .light = v->light,
-                          .level = v->level,
-                          .kind = v->kind,
-                          .flags = (v->removed ? WINDOW_REMOVED : 0) | (v->part ? WINDOW_PART : 0),
-                          .often = v->often };
-        memcpy(k.emission, v->emission, sizeof(k.emission));
-        noct_put(w, &k, sizeof(k));
-    }
-    noct_end(w);
+    noct_put_array(w, "windows", s->windows.data, s->windows.len, sizeof(noc_scene_window));
 }
 
-static bool window_fits(const noc_scene *s, const kept_window *k) {
-    bool ok = k->light < s->lights.len && k->kind < NOC_WINDOW_KIND_COUNT && k->flags <= WINDOW_FLAGS &&
-              k->level >= 0 && k->level <= 1 && k->often <= UINT16_MAX;
+static bool window_fits(const noc_scene *s, const noc_scene_window *w) {
+    bool ok = w->light < s->lights.len && w->kind < NOC_WINDOW_KIND_COUNT && !w->none && w->level >= 0 && w->level <= 1;
     for (int c = 0; c < 3; c++)
-        ok = ok && k->emission[c] >= 0 && k->emission[c] <= 1e12f;
+        ok = ok && w->emission[c] >= 0 && w->emission[c] <= 1e12f;
     uint32_t own = NOC_LIGHT_OWNED | NOC_LIGHT_MOVES | NOC_LIGHT_FREE; /* a mesh's, which goes with that alone */
-    return ok && (k->flags & WINDOW_REMOVED || (s->lights.data[k->light].flags & own) == NOC_LIGHT_OWNED);
+    return ok && (w->removed || (s->lights.data[w->light].flags & own) == NOC_LIGHT_OWNED);
+}
+
+static bool check_windows(const void *ctx, size_t first, size_t end) {
+    const noc_scene *s = ctx;
+    bool ok = true;
+    for (size_t i = first; ok && i < end; i++)
+        ok = window_fits(s, &s->windows.data[i]) && (!i || s->windows.data[i].light > s->windows.data[i - 1].light);
+    return ok;
 }
 
 noc_status noc_kept_windows(noct_file *f, noc_scene *s) {
     size_t count;
-    const kept_window *k = noct_array(f, "windows", sizeof(*k), &count);
-    if (!array_reserve(&s->windows, count))
-        return noct_no_memory(f);
-    for (size_t i = 0; i < count; i++) {
-        if (!window_fits(s, &k[i]) || (i && k[i].light <= k[i - 1].light))
-            return noct_wrong(f, "window %zu is none", i);
-        noc_scene_window v = { .light = k[i].light, .level = k[i].level };
-        v.kind = (unsigned char)k[i].kind;
-        v.removed = (k[i].flags & WINDOW_REMOVED) != 0;
-        v.part = (k[i].flags & WINDOW_PART) != 0;
-        v.often = k[i].often & UINT16_MAX;
-        memcpy(v.emission, k[i].emission, sizeof(v.emission));
-        s->windows.data[s->windows.len++] = v;
-    }
-    return f->status;
+    noc_scene_window *windows = noct_array(f, "windows", sizeof(*windows), &count);
+    array_borrow(&s->windows, windows, count);
+    return noct_each(f, count, check_windows, s) ? f->status : noct_wrong(f, "one of its windows is none");
 }

@@ -302,7 +302,10 @@ void noc_kept_take(noct_file *f, noc_scene *s) {
     f->bytes = NULL;
 }
 
-void noc_kept_forget(noc_scene *s) { s->meshes.len = s->lights.len = s->windows.len = s->profile_cells.len = 0; }
+void noc_kept_forget(noc_scene *s) {
+    s->meshes.len = s->lights.len = s->windows.len = s->facades.len = s->triangle_facade.len = 0;
+    s->profile_cells.len = 0;
+}
 
 noc_status noc_kept_done(noct_file *f, noc_scene *s) {
     if (!array_reserve(&s->gaps, s->meshes.len))

@@ -17,7 +17,8 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->body_links.cap * sizeof(noc_body_link) + s->body_cells.cap * sizeof(uint32_t) +
            s->stops.cap * sizeof(noc_scene_stop) + s->routes.cap * sizeof(noc_scene_route) +
            s->cars.cap * sizeof(noc_scene_car) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap +
-           s->material_names.cap * sizeof(char *);
+           (s->triangle_facade.cap + s->facade_cells.cap) * sizeof(uint32_t) +
+           s->facades.cap * sizeof(noc_facade_record) + s->material_names.cap * sizeof(char *);
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {

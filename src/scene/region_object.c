@@ -48,6 +48,26 @@ static bool triangle_patch(const noc_scene *s, size_t t, const float *m, noc_pat
     return true;
 }
 
+/* Half of a window that lies in its wall. */
+static noc_patch window_patch(const noc_scene *s, const noc_scene_window *w, int half) {
+    const noc_light_record *l = &s->lights.data[w->light];
+    noc_patch p = { .material = s->facades.data[w->facade - 1].material };
+    double n[3], length;
+    for (int k = 0; k < 3; k++) {
+        p.p[k] = l->p[k] + (half ? l->a[k] + l->b[k] : 0);
+        p.u[k] = half ? -l->a[k] : l->a[k];
+        p.v[k] = half ? -l->b[k] : l->b[k];
+    }
+    for (int k = 0; k < 3; k++)
+        n[k] = (double)l->a[(k + 1) % 3] * (double)l->b[(k + 2) % 3] -
+               (double)l->a[(k + 2) % 3] * (double)l->b[(k + 1) % 3];
+    length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; k++)
+        p.n[k] = (float)(n[k] / fmax(length, 1e-30));
+    p.weight = (float)(0.5 * length);
+    return p;
+}
+
 /* Surfaces that are added. */
 typedef struct adding {
     const noc_scene *scene;
@@ -91,6 +111,21 @@ static noc_status add_meshes(adding *a, uint32_t model, const float *m) {
     return status;
 }
 
+static bool window_of_object(const adding *a, const noc_scene_window *w) {
+    const noc_scene *s = a->scene;
+    return w->facade && !w->removed && of_object(a, &s->meshes.data[s->facades.data[w->facade - 1].mesh], 0);
+}
+
+/* Windows that lie in walls. */
+static noc_status add_windows(const adding *a) {
+    const noc_scene *s = a->scene;
+    bool ok = true;
+    for (size_t i = 0; i < s->windows.len && ok && a->classes >> NOC_CLASS_WINDOW & 1; i++)
+        for (int half = 0; half < 2 && ok && window_of_object(a, &s->windows.data[i]); half++)
+            ok = array_push(&a->to->patches, window_patch(s, &s->windows.data[i], half));
+    return ok ? NOC_OK : NOC_ERR_MEMORY;
+}
+
 /* Bodies of lamps of that name. */
 static noc_status add_bodies(adding *a, const char *id) {
     const noc_scene *s = a->scene;
@@ -121,6 +156,11 @@ static bool find_panes(const adding *a, region_panes *panes) {
         for (uint32_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count && ok; t++)
             ok = !triangle_patch(s, t, NULL, &p) || region_panes_add(panes, &p);
     }
+    for (size_t i = 0; i < s->windows.len && ok; i++)
+        for (int half = 0; half < 2 && ok && window_of_object(a, &s->windows.data[i]); half++) {
+            p = window_patch(s, &s->windows.data[i], half);
+            ok = region_panes_add(panes, &p);
+        }
     region_panes_sort(panes);
     return ok;
 }
@@ -129,6 +169,7 @@ static noc_status add_object(noc_region *region, const noc_scene *s, const char 
     region_panes panes = { .counted = classes >> NOC_CLASS_WINDOW & 1 };
     adding a = { s, id, classes, &panes, region, false };
     noc_status status = find_panes(&a, &panes) ? add_meshes(&a, 0, NULL) : NOC_ERR_MEMORY;
+    status = status ? status : add_windows(&a);
     status = status ? status : add_bodies(&a, id);
     region_panes_free(&panes);
     *found = a.found;

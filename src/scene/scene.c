@@ -72,6 +72,9 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->light_made);
     array_free(&scene->moving);
     array_free(&scene->windows);
+    array_free(&scene->triangle_facade);
+    array_free(&scene->facades);
+    array_free(&scene->facade_cells);
     array_free(&scene->walls);
     array_free(&scene->models);
     array_free(&scene->instances);

@@ -18,6 +18,7 @@ extern const char *const noc_label_names[NOC_LABEL_COUNT];
 /* The same records for C and shaders (core/records.h). */
 typedef light_record noc_light_record;
 typedef material_record noc_material_record;
+typedef facade_record noc_facade_record;
 _Static_assert((int)LIGHT_SPHERE == NOC_LIGHT_SPHERE && (int)LIGHT_DISC == NOC_LIGHT_DISC &&
                    (int)LIGHT_TRIANGLE == NOC_LIGHT_TRIANGLE && (int)LIGHT_PARALLELOGRAM == NOC_LIGHT_PARALLELOGRAM &&
                    (int)LIGHT_POINT == NOC_LIGHT_POINT && (int)LIGHT_SPOT == NOC_LIGHT_SPOT,
@@ -62,14 +63,16 @@ enum { NOC_WINDOW_OFTEN = 4096 };
 /* A window: a light that comes and goes with its mesh. */
 typedef struct noc_scene_window {
     uint32_t light;
-    float emission[3];    /* where it is lit */
-    float level;          /* lit where the share of its kind is above it */
-    unsigned kind : 8;    /* noc_window_kind */
-    unsigned removed : 1; /* with its mesh: the light may be another one now */
-    unsigned part : 1;    /* a further part of the pane that the window before it is of */
-    unsigned often : 16;  /* the share of its kind is times this over NOC_WINDOW_OFTEN here, at most 1 */
+    float emission[3];   /* where it is lit */
+    float level;         /* lit where the share of its kind is above it */
+    uint8_t kind;        /* noc_window_kind */
+    uint8_t removed : 1; /* with its mesh: the light may be another one now */
+    uint8_t part : 1;    /* a further part of the pane that the window before it is of */
+    uint8_t none : 6;    /* 0 */
+    uint16_t often;      /* the share of its kind is times this over NOC_WINDOW_OFTEN here, at most 1 */
+    uint32_t facade;     /* number + 1 of the facade that it is in; 0: triangles of its mesh show it */
 } noc_scene_window;
-_Static_assert(sizeof(noc_scene_window) <= 32, "a million windows are 32 MB at most");
+_Static_assert(sizeof(noc_scene_window) == 28, "it has no gaps: built cities hold it as it is");
 
 /* Meshes and lights in coordinates of their own. Published by a commit it does not change any more. */
 typedef struct noc_scene_model {
@@ -285,7 +288,11 @@ struct noc_scene {
     NOC_ARRAY(uint32_t) moving;                      /* lights of the moving half, ascending */
     NOC_ARRAY(noc_scene_window) windows;             /* ascending by their lights */
     NOC_ARRAY(uint8_t) walls;                        /* noc_wall_verdict of triangles; of those behind its end UNSEEN */
-    NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
+    NOC_ARRAY(uint32_t) triangle_facade;             /* number + 1 of a wall's facade, 0: none; and so behind its end */
+    NOC_ARRAY(noc_facade_record) facades;
+    NOC_ARRAY(uint32_t) facade_cells;  /* the window's light of each cell, or NOC_NO_LIGHT */
+    uint64_t facades_changed;          /* versions.geometry of the last commit that took windows out of a facade */
+    NOC_ARRAY(noc_scene_model) models; /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
     NOC_ARRAY(noc_scene_body) bodies;     /* ascending by their lights; none comes or goes after the first commit */
     NOC_ARRAY(noc_body_link) body_links;  /* bodies by cells of the ground, for vertical rays */
@@ -501,14 +508,15 @@ static inline noc_wall_verdict noc_scene_wall(const noc_scene *s, size_t triangl
 /* Before the first commit: room for verdicts on all triangles that are there. false: no memory, reported. */
 bool noc_scene_reserve_walls(noc_scene *s);
 typedef struct noc_pane {
-    const uint32_t *triangles; /* that show it, as numbers in the mesh */
+    const uint32_t *triangles; /* that show it, as numbers in the mesh; NULL: it is in window.facade */
     size_t triangle_count;
     noc_light shape;         /* its emission is not read */
     noc_scene_window window; /* its light is set */
 } noc_pane;
-/* Before the first commit: makes triangles of a mesh the window that the pane says; dark. false: no memory, reported.
- */
+/* Before the first commit: makes triangles of a mesh, or cells of a facade that noc_scene_facade_takes, the window that
+ * the pane says; dark. false: no memory, reported. */
 bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane);
+
 /* Before the first commit: lit or dark, as params say. */
 void noc_scene_light_windows(noc_scene *s, const noc_window_params *params);
 void noc_windows_switch(noc_scene *s, const noc_window_switch *to, noc_changes *c);

@@ -1,5 +1,5 @@
 /* Windows: lights that are lit or dark by the hour, and show the glass they are made of where they are dark. */
-#include "scene/scene.h"
+#include "scene/facade.h"
 
 #include <math.h>
 
@@ -104,12 +104,14 @@ bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
     w.light = light;
     r.flags |= NOC_LIGHT_OWNED;
     memset(r.e, 0, sizeof(r.e));
-    m->panes = true;
+    m->panes |= !w.facade;
     s->windows.data[s->windows.len++] = w;
     s->lights.data[s->lights.len++] = r;
     s->light_names.data[s->light_names.len++] = m->name;
     for (size_t t = 0; t < pane->triangle_count; t++)
         s->triangle_light.data[m->first_triangle + pane->triangles[t]] = light;
+    if (w.facade)
+        noc_facade_put(s, w.facade, light);
     return true;
 }
 
@@ -134,9 +136,11 @@ void noc_windows_switch(noc_scene *s, const noc_window_switch *to, noc_changes *
     }
 }
 
-/* They lie in the order of their lights. */
+/* They lie in the order of their lights, and where a load has made them there is no other light between two. */
 noc_scene_window *noc_window_of(const noc_scene *s, uint32_t light) {
-    size_t low = 0, high = s->windows.len;
+    size_t low = 0, high = s->windows.len, likely = high ? (size_t)light - s->windows.data[0].light : 0;
+    if (likely < high && s->windows.data[likely].light == light)
+        return &s->windows.data[likely];
     while (low < high) {
         size_t middle = (low + high) / 2;
         if (s->windows.data[middle].light < light)

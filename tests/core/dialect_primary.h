@@ -2,6 +2,7 @@
 #ifndef DIALECT_PRIMARY_H
 #define DIALECT_PRIMARY_H
 
+#include "core/facade.h"
 #include "core/primary.h"
 
 FN ray_hit any_hit(u32 key) {
@@ -29,6 +30,25 @@ FN placement any_placement(u32 key) {
     m.z = mul3(z, scale);
     m.at = any_v3(key, KU(5060u));
     return m;
+}
+
+/* Slots 22 and 23: of places in and around a grid, and around a window. */
+FN void windows_in_walls(CTX u32 item, u32 key) {
+    facade_grid f;
+    f.origin = any_v3(key, KU(5120u));
+    f.along = mul3(unit3(any_v3(key, KU(5130u))), K(0.4f));
+    f.up = mul3(unit3(any_v3(key, KU(5140u))), K(0.3f));
+    f.first = shr(rng_bits(key, KU(5150u)), 12);
+    f.columns = KU(1u) + shr(rng_bits(key, KU(5151u)), 27);
+    f.rows = KU(1u) + shr(rng_bits(key, KU(5152u)), 28);
+    v3 off = mul3(any_v3(key, KU(5153u)), K(0.5f));
+    put_u32(PASS item, PRIMARY_FIRST + 22, facade_cell(f, add3(f.origin, off)));
+    v3 a = any_v3(key, KU(5160u));
+    v3 b = any_v3(key, KU(5170u));
+    real s = rng(key, KU(5180u)) * K(2.0f) - K(0.5f);
+    real t = rng(key, KU(5181u)) * K(2.0f) - K(0.5f);
+    v3 p = add3(f.origin, add3(mul3(a, s), mul3(b, t)));
+    put_u32(PASS item, PRIMARY_FIRST + 23, selu(window_covers(f.origin, a, b, p), KU(1u), KU(0u)));
 }
 
 /* Slots 0 to 21. */
@@ -69,6 +89,7 @@ CALL void primaries(CTX u32 item, u32 key) {
     put_v3(PASS item, PRIMARY_FIRST + 17, s.albedo);
     put_real(PASS item, PRIMARY_FIRST + 20, s.f0);
     put_u32(PASS item, PRIMARY_FIRST + 21, receiver_sel(receives(r), r, receiver_none()).light);
+    windows_in_walls(PASS item, key);
 }
 
 #endif

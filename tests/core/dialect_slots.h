@@ -16,7 +16,7 @@
 #define PRESAMPLED_FIRST (TEXTURES_FIRST + TEXTURES_SLOTS)
 #define PRESAMPLED_SLOTS 32 /* dialect_presampled.h */
 #define PRIMARY_FIRST (PRESAMPLED_FIRST + PRESAMPLED_SLOTS)
-#define PRIMARY_SLOTS 22 /* dialect_primary.h */
+#define PRIMARY_SLOTS 24 /* dialect_primary.h */
 #define ITEM_SLOTS (PRIMARY_FIRST + PRIMARY_SLOTS)
 #define TILE_WORDS 3840 /* of memory for a tile */
 

@@ -229,6 +229,8 @@ static const struct {
     { PRIMARY_FIRST + 13, "hit_texel" },
     { PRIMARY_FIRST + 14, "surf_of_receiver" },
     { PRIMARY_FIRST + 21, "receiver_sel" },
+    { PRIMARY_FIRST + 22, "facade_cell" },
+    { PRIMARY_FIRST + 23, "window_covers" },
 };
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23,  25,  31,  37, 39,
@@ -249,7 +251,7 @@ static bool holds_integers(int slot) {
            slot == PRESAMPLED_FIRST + 15 || slot == PRESAMPLED_FIRST + 16 || slot == PRESAMPLED_FIRST + 18 ||
            slot == PRESAMPLED_FIRST + 19 || slot == PRESAMPLED_FIRST + 21 || slot == INFLUENCE_FIRST + 2 ||
            slot == PRESAMPLED_FIRST + 28 || slot == PRESAMPLED_FIRST + 29 || slot == PRESAMPLED_FIRST + 31 ||
-           slot == PRIMARY_FIRST + 7 || slot == PRIMARY_FIRST + 13 || slot == PRIMARY_FIRST + 21 ||
+           slot == PRIMARY_FIRST + 7 || slot == PRIMARY_FIRST + 13 || slot >= PRIMARY_FIRST + 21 ||
            (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
 }
 

@@ -166,13 +166,17 @@ static void test_together(void **state) {
     (void)state;
     save_city();
     bytes b = read_all();
-    size_t words[4];
+    size_t words[7], shown = 0;
     uint32_t *lit = section(b, "instlit", &words[0]), *instances = section(b, "instance", &words[1]),
-             *windows = section(b, "windows", &words[2]), *tables = section(b, "tables", &words[3]);
+             *windows = section(b, "windows", &words[2]), *tables = section(b, "tables", &words[3]),
+             *facades = section(b, "facades", &words[4]), *cells = section(b, "cells", &words[5]),
+             *fronts = section(b, "fronts", &words[6]);
+    while (cells[shown] == NOC_NO_LIGHT)
+        shown++;
     size_t lights = words[0] / 2; /* of each of the two that stand */
     assert_true(lights > 1 && words[1] == 3 * 13 && !instances[13] && instances[0] == instances[26]);
-    assert_true(windows[0] < windows[8] && windows[8] < lit[0]); /* lights of cars come last */
-    size_t own = words[2] / 8 - 1;
+    assert_true(windows[0] < windows[7] && windows[7] < lit[0]); /* lights of cars come last */
+    size_t own = words[2] / 7 - 1;
     const struct {
         uint32_t *word, value;
         const char *what;
@@ -182,7 +186,15 @@ static void test_together(void **state) {
                   { &instances[1 + 1], bits_of(1), "instance 0 is none" },      /* a shear */
                   { &instances[27 + 10], bits_of(-1), "instance 2 is none" },   /* a mirror */
                   { &instances[1 + 10], bits_of(1e-9f), "instance 0 is none" }, /* flat */
-                  { &windows[8 * own], lit[0], "window" },
+                  { &windows[7 * own], lit[0], "one of its windows is none" },
+                  { &windows[7 * own + 6], 5000, "is in a facade that there is not" },
+                  { &cells[shown], lit[0], "a cell of a facade shows what is no window of it" },
+                  { &cells[shown], 1u << 31, "a cell of a facade shows what is no window of it" },
+                  { &facades[3], 1, "facade 0 is none" },          /* begins elsewhere */
+                  { &facades[7], 0x80000000, "facade 0 is none" }, /* columns */
+                  { &facades[12], 1u << 30, "facade 0 is none" },  /* material */
+                  { &facades[0], 0x7fc00000, "facade 0 is none" }, /* nowhere */
+                  { &fronts[0], 5000, "cells or walls of no facade" },
                   { &tables[0], 1, "the table of profile 1 lies elsewhere" } }; /* among the heads */
     for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
         uint32_t before = *wrong[i].word;

@@ -87,6 +87,11 @@ static void test_million(void **state) {
     assert_true(info.windows >= LEAST);
     assert_int_equal(info.lights, info.windows);
     assert_true(info.windows_lit > LEAST / 5 && info.windows_lit < LEAST / 2);
+
+    double bytes = (double)(scene->facade_cells.len * sizeof(uint32_t) + scene->facades.len * sizeof(facade_record)) +
+                   (double)(info.windows * (sizeof(noc_light_record) + sizeof(char *) + sizeof(noc_scene_window)));
+    assert_int_equal(info.triangles_by_class[NOC_CLASS_WINDOW], 0);
+    assert_true(bytes / (double)info.windows < 110);
     size_t lit = 0;
     for (size_t i = 0; i < scene->windows.len; i++) {
         const noc_light_record *l = &scene->lights.data[scene->windows.data[i].light];
@@ -112,7 +117,7 @@ static void test_million(void **state) {
     struct rusage used;
     assert_int_equal(getrusage(RUSAGE_SELF, &used), 0);
     if (!SANITIZED)
-        assert_true(used.ru_maxrss < 1000000);
+        assert_true(used.ru_maxrss < 500000);
     print_message("# %zu windows: %.1f s of processor time, %ld MB at most; pictures of %.3f and %.3f cd/m2\n",
                   info.windows, (double)used.ru_utime.tv_sec + 1e-6 * (double)used.ru_utime.tv_usec,
                   used.ru_maxrss / 1000, lists, tree);

@@ -1,6 +1,7 @@
 /* Windows of a city that is loaded: which are lit, how they are switched, and that dark ones are glass. */
 #include "digest.h"
 #include "fake_reader.h"
+#include "scene/facade.h"
 
 #include <nocturne/image.h>
 #include <nocturne/influence.h>
@@ -232,11 +233,10 @@ static void test_switched(void **state) {
     assert_int_equal(a.scene->versions.emission, before.emission + 1);
     p.hour = 25;
     assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_ERR_ARGUMENT);
-    /* windows that went with their mesh are not switched; their lights may be others now */
-    size_t mesh = a.scene->meshes.len - 1;
-    while (!a.scene->meshes.data[mesh].panes)
-        mesh--;
-    assert_int_equal(noc_scene_remove_mesh(a.scene, (int)mesh), NOC_OK);
+    /* windows that went with their wall are not switched; their lights may be others now */
+    for (size_t mesh = 0; mesh < a.scene->meshes.len; mesh++)
+        if (noc_facade_windows(a.scene, &a.scene->meshes.data[mesh]))
+            assert_int_equal(noc_scene_remove_mesh(a.scene, (int)mesh), NOC_OK);
     assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
     noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 0, 0, 50 }, .emission = { 3, 2, 1 } };
     int light = noc_scene_add_light(a.scene, &lamp);

@@ -1,6 +1,9 @@
 /* Rays of a view: what the tracer answers, and the book-keeping around it. */
 #include "backend/cpu/cpu.h"
 
+#include "core/hit.h"
+#include "scene/facade.h"
+
 #include <math.h>
 
 static void keep(const cpu_view *s, worker *w, const packet *p) {
@@ -62,6 +65,21 @@ static void gather_instance(const noc_scene *scene, uint32_t instance, int l, st
     out->placed |= 1u << l;
 }
 
+/* Where the hit is on a window in the wall: of what that is made, and its light. */
+static bool gather_window(const noc_scene *scene, const noc_facade_record *facade, int l, struck_block *out) {
+    corners at;
+    v3 *const to[] = { &at.a, &at.b, &at.c };
+    for (int corner = 0; corner < 3; corner++)
+        *to[corner] = V3(out->at[corner][0][l], out->at[corner][1][l], out->at[corner][2][l]);
+    v3 p = hit_point(at, out->u[l], out->v[l]);
+    uint32_t light = noc_facade_light(scene, facade, (const float[]){ p.x, p.y, p.z });
+    if (light == NOC_NO_LIGHT)
+        return false;
+    out->material[l] = facade->material;
+    out->light[l] = light;
+    return true;
+}
+
 static void gather_hit(const noc_scene *scene, const hitblock *h, int l, struck_block *out) {
     uint32_t triangle = h->triangle[l];
     const uint32_t *v = scene->indices.data + 3 * (size_t)triangle;
@@ -74,6 +92,9 @@ static void gather_hit(const noc_scene *scene, const hitblock *h, int l, struck_
     out->material[l] = scene->triangle_material.data[triangle];
     out->light[l] = scene->triangle_light.data[triangle];
     out->lanes |= 1u << l;
+    const noc_facade_record *facade = h->instance[l] == NO_INSTANCE ? noc_scene_facade_of(scene, triangle) : NULL;
+    if (facade && gather_window(scene, facade, l, out))
+        return;
     if (h->instance[l] != NO_INSTANCE)
         gather_instance(scene, h->instance[l], l, out);
     if (scene->texels.len)

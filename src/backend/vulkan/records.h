@@ -45,6 +45,9 @@ struct vk_pane_record {
     ADDRESS(Floats, positions)                                                                                         \
     ADDRESS(Words, triangle_material)                                                                                  \
     ADDRESS(Words, triangle_light)                                                                                     \
+    ADDRESS(Words, triangle_facade) /* number + 1; 0: none */                                                          \
+    ADDRESS(Facades, facades)                                                                                          \
+    ADDRESS(Words, facade_cells)                                                                                       \
     ADDRESS(Words, image_places)  /* of each material the place of its texture + 1; 0: none */                         \
     ADDRESS(Words, image_corners) /* 2 floats a vertex as bits; 0xffffffff: its mesh has none */                       \
     ADDRESS(Panes, panes)         /* of each material; none: no surface lets light through */                          \
@@ -94,11 +97,12 @@ struct vk_pane_record {
     ADDRESS(Words, view_triangles)  /* that each pixel sees */                                                         \
     WORD(uint32_t, light_count)                                                                                        \
     WORD(uint32_t, triangle_count)                                                                                     \
-    WORD(uint32_t, textured)  /* 1: materials have textures, and meshes places in them */                              \
-    WORD(uint32_t, weakens)   /* 1: light is weakened by `through` */                                                  \
-    WORD(uint32_t, instanced) /* 1: the instance that each pixel sees is kept */                                       \
-    WORD(uint32_t, moved)     /* 1: instances may have been elsewhere in the frame before */                           \
-    WORD(uint32_t, slots)     /* pixels of the blocks whose rays are kept at once: rays of one slot */                 \
+    WORD(uint32_t, facade_triangles) /* that triangle_facade is of */                                                  \
+    WORD(uint32_t, textured)         /* 1: materials have textures, and meshes places in them */                       \
+    WORD(uint32_t, weakens)          /* 1: light is weakened by `through` */                                           \
+    WORD(uint32_t, instanced)        /* 1: the instance that each pixel sees is kept */                                \
+    WORD(uint32_t, moved)            /* 1: instances may have been elsewhere in the frame before */                    \
+    WORD(uint32_t, slots)            /* pixels of the blocks whose rays are kept at once: rays of one slot */          \
     WORD(uint32_t, blocks_y)                                                                                           \
     WORD(uint32_t, draws)   /* candidates a pixel */                                                                   \
     WORD(uint32_t, subsets) /* of candidates that are drawn before the frame, and rows of each */                      \

@@ -181,6 +181,7 @@ typedef struct vk_world {
     noc_log *log;
     vk_structure structure;
     vk_array positions, indices, triangle_material, triangle_light, materials, lights, profiles, texels;
+    vk_array triangle_facade, facades, facade_cells;
     vk_array image_places, image_corners; /* textures: of each material; of each vertex */
     vk_array panes;                       /* of each material; none: no surface lets light through */
     vk_array instances, instance_lights, backs;

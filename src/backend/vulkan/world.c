@@ -48,12 +48,15 @@ static noc_status fill(vk_world *w, vk_array *a, const void *data, size_t bytes,
 
 static const noc_range nothing = { 0, 0 };
 
-enum { VK_ARRAYS = 22 };
+enum { VK_ARRAYS = 25 };
 static void arrays_of(vk_world *w, vk_array *out[VK_ARRAYS]) {
     vk_array *const all[] = { &w->positions,
                               &w->indices,
                               &w->triangle_material,
                               &w->triangle_light,
+                              &w->triangle_facade,
+                              &w->facades,
+                              &w->facade_cells,
                               &w->materials,
                               &w->lights,
                               &w->profiles,
@@ -122,6 +125,20 @@ static noc_status fill_image_corners(vk_world *w) {
     return status;
 }
 
+/* They stay as they are but for windows that go with a wall. */
+static noc_status fill_facades(vk_world *w) {
+    const noc_scene *s = w->scene;
+    noc_range all = { 0, s->facade_cells.len };
+    if (!s->facades.len)
+        return NOC_OK;
+    noc_status status = FILL(triangle_facade, s->triangle_facade, nothing, "facades");
+    if (status == NOC_OK)
+        status = FILL(facades, s->facades, nothing, "facades");
+    return status
+               ? status
+               : FILL(facade_cells, s->facade_cells, s->facades_changed > w->seen.geometry ? all : nothing, "facades");
+}
+
 static noc_status follow_geometry(vk_world *w) {
     const noc_scene *s = w->scene;
     noc_range t, v;
@@ -139,6 +156,8 @@ static noc_status follow_geometry(vk_world *w) {
         status = FILL(triangle_material, s->triangle_material, t, "triangles");
     if (status == NOC_OK)
         status = FILL(triangle_light, s->triangle_light, t, "triangles");
+    if (status == NOC_OK)
+        status = fill_facades(w);
     if (status == NOC_OK)
         status = fill_image_corners(w);
     return status;
@@ -381,7 +400,8 @@ noc_status noc_vk_world_fill_sources(vk_world *w, const noc_light_sources *sourc
 
 size_t noc_vk_world_bytes(const vk_world *w) {
     return (size_t)(w->positions.buffer.bytes + w->indices.buffer.bytes + w->triangle_material.buffer.bytes +
-                    w->triangle_light.buffer.bytes + w->materials.buffer.bytes + w->lights.buffer.bytes) +
+                    w->triangle_light.buffer.bytes + w->triangle_facade.buffer.bytes + w->facades.buffer.bytes +
+                    w->facade_cells.buffer.bytes + w->materials.buffer.bytes + w->lights.buffer.bytes) +
            noc_vk_structure_bytes(w);
 }
 

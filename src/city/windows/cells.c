@@ -21,6 +21,7 @@ typedef struct flat_triangle {
     double p[3][2], lo[2], hi[2];
     double n[7][2], d[7]; /* lines around it: n . x <= d */
     int sides;
+    double out; /* m that it sticks out of its facet's plane, 0 or more */
 } flat_triangle;
 
 /* Splits at the line of the points x where n . x = d: what is beyond it, n . x > d, and the rest. */
@@ -136,7 +137,7 @@ static bool flatten(const wall_facets *f, const strip *s, flat_list *out) {
         for (uint32_t k = a->first; k < a->first + a->count; k++) {
             flat_triangle t = { .lo = { INFINITY, INFINITY }, .hi = { -INFINITY, -INFINITY } };
             for (int j = 0; j < 3; j++) {
-                wall_plane_at(&a->plane, f->pieces.data[f->by_facet.data[k]].t.p[j], t.p[j]);
+                t.out = fmax(t.out, wall_plane_at(&a->plane, f->pieces.data[f->by_facet.data[k]].t.p[j], t.p[j]));
                 t.p[j][0] += s->parts[i].s - a->lo[0];
                 t.p[j][1] += a->plane.c[2];
                 for (int m = 0; m < 2; m++) {
@@ -153,8 +154,7 @@ static bool flatten(const wall_facets *f, const strip *s, flat_list *out) {
 }
 
 /* A flat window before the wall from lo to hi: on a curved one before its chord, and clear of what bulges over that. */
-static city_window window_at(const wall_facets *f, const strip *s, const double lo[2], const double hi[2],
-                             double offset) {
+static city_window window_at(const wall_facets *f, const strip *s, const double lo[2], const double hi[2]) {
     city_window w = { .corner = { 0 } };
     double a[3], b[3], level[3];
     const wall_plane *left, *right;
@@ -178,10 +178,33 @@ static city_window window_at(const wall_facets *f, const strip *s, const double 
         bulge = fmax(bulge, dot3(d, n));
     }
     for (int k = 0; k < 3; k++) {
-        w.corner[k] = a[k] + (offset + bulge) * n[k];
+        w.corner[k] = a[k] + (WINDOW_OFFSET_MM / 1000 + bulge) * n[k];
         w.edge_v[k] = (hi[1] - lo[1]) * level[k];
     }
     return w;
+}
+
+/* How far the window's corner is before where it belongs in a flat wall. */
+static double find_back(const flat_list *flat, const uint32_t *near, size_t count, const double lo[2],
+                        const double hi[2]) {
+    double out = 0;
+    for (size_t i = 0; i < count; i++) {
+        const flat_triangle *t = &flat->data[near[i]];
+        if (t->hi[1] > lo[1] && t->lo[1] < hi[1] && t->hi[0] > lo[0] && t->lo[0] < hi[0])
+            out = fmax(out, t->out);
+    }
+    return WINDOW_OFFSET_MM / 1000 - out;
+}
+
+/* Columns of `width` from `start` along the wall on, rows of `height`. */
+static void set_grid(const wall_facets *f, const strip *s, double start, double width, double height,
+                     city_facade *facade) {
+    const wall_plane *plane;
+    wall_strip_place(f, s, start, s->lo, facade->origin, &plane);
+    for (int k = 0; k < 3; k++) {
+        facade->along[k] = width * plane->u[k];
+        facade->up[k] = height * plane->v[k];
+    }
 }
 
 typedef struct row {
@@ -218,7 +241,7 @@ static bool gather(const flat_list *flat, double lo, double hi, uint32_t *near, 
 }
 
 bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_params *p, const building_use *use,
-                     double foot, size_t *tests, size_t most_tests, city_window_list *out) {
+                     double foot, size_t *tests, size_t most_tests, city_facade *facade, city_window_list *out) {
     const double slack = 1e-3; /* m: a wall of exactly three cells has three */
     flat_list flat = { 0 };
     double cell = p->cell, span = s->length + slack;
@@ -231,6 +254,12 @@ bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_para
     bool ok = flatten(f, s, &flat), street = use->shops && s->lo - foot < 0.5 * p->storey_height;
     uint32_t *near = ok ? noc_alloc(NOC_MAX(flat.len, 1u) * sizeof(*near)) : NULL;
     ok = ok && near;
+    if (s->count == 1) { /* fronts of shops may begin in the middle of a cell */
+        bool halves = street && columns % SHOP_CELLS;
+        set_grid(f, s, start, halves ? cell / 2 : cell, p->storey_height, facade);
+        facade->columns = (uint32_t)(halves ? 2 * columns : columns);
+        facade->rows = (uint32_t)rows;
+    }
     for (int shops = street; ok && shops >= 0; shops--) {
         int step = shops ? SHOP_CELLS : 1;
         double first = shops ? start + 0.5 * (double)(columns % SHOP_CELLS) * cell : start;
@@ -254,7 +283,8 @@ bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_para
                 *tests += count - 1; /* one is what every cell takes */
                 if (!is_wall(flat.data, near, count, a, b))
                     continue;
-                city_window w = window_at(f, s, lo, hi, p->offset);
+                city_window w = window_at(f, s, lo, hi);
+                w.back = find_back(&flat, near, count, lo, hi);
                 w.storey = (int)r;
                 w.column = (int)c;
                 w.kind = k.kind;

@@ -100,9 +100,11 @@ strip wall_strip_get(const wall_facets *f, const wall_strips *s, size_t index);
 /* The place of (s, t) on the wall, and the way the wall faces there. */
 void wall_strip_place(const wall_facets *f, const strip *s, double along, double t, double p[3], const wall_plane **at);
 
-/* cells.c. Adds the windows of a strip: corners, storey, column, kind. foot: height of the building's lowest wall.
- * *tests: of triangles under cells, so far; from most_tests on no further windows are found. */
+/* cells.c. Adds the windows of a strip: corners, back, storey, column, kind; and the grid of a flat facade. foot:
+ * height of the building's lowest wall. *tests: of triangles under cells, so far; from most_tests on no further windows
+ * are found. */
 bool wall_cells_find(const wall_facets *f, const strip *s, const noc_window_params *params, const building_use *use,
-                     double foot, size_t *tests, size_t most_tests, city_window_list *out) NOC_MUST_USE;
+                     double foot, size_t *tests, size_t most_tests, city_facade *facade,
+                     city_window_list *out) NOC_MUST_USE;
 
 #endif

@@ -75,7 +75,7 @@ static bool find_windows(window_maker *m, const wall_facets *f, const strip *s, 
     size_t first = out->list.len, hidden = 0;
     bool crowded = m->looks >= m->most_looks || m->tests >= m->most_tests;
     if (!crowded) {
-        if (!wall_cells_find(f, s, m->params, m->use, m->box->lo[2], &m->tests, m->most_tests, &out->list))
+        if (!wall_cells_find(f, s, m->params, m->use, m->box->lo[2], &m->tests, m->most_tests, facade, &out->list))
             return false;
         hidden = drop_hidden(&out->list, first, m->cover, &m->looks, m->most_looks);
         crowded = m->looks >= m->most_looks || m->tests >= m->most_tests;
@@ -84,6 +84,12 @@ static bool find_windows(window_maker *m, const wall_facets *f, const strip *s, 
     facade->windows = out->list.len - first;
     facade->verdict = facade->windows ? NOC_WALL_TAKEN : hidden || crowded ? NOC_WALL_PARTY : NOC_WALL_SMALL;
     return true;
+}
+
+/* Of a triangle, as it was given. */
+static void note_facade(city_windows *out, uint32_t triangle, const city_facade *facade) {
+    out->verdicts.data[triangle] = (uint8_t)facade->verdict;
+    out->of.data[triangle] = (uint32_t)out->facades.len;
 }
 
 static bool add_facade(const wall_facets *f, const strip *s, window_maker *m, city_windows *out) {
@@ -105,7 +111,7 @@ static bool add_facade(const wall_facets *f, const strip *s, window_maker *m, ci
     for (size_t i = 0; i < s->count; i++) {
         const facet *a = &f->facets.data[s->parts[i].facet];
         for (uint32_t k = a->first; k < a->first + a->count; k++)
-            out->verdicts.data[f->pieces.data[f->by_facet.data[k]].given] = (uint8_t)facade.verdict;
+            note_facade(out, f->pieces.data[f->by_facet.data[k]].given, &facade);
     }
     return array_push(&out->facades, facade);
 }
@@ -115,13 +121,15 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
                              city_windows *out) {
     wall_facets f = { 0 };
     wall_strips strips = { 0 };
-    out->list.len = out->facades.len = out->verdicts.len = out->crowded = 0;
+    out->list.len = out->facades.len = out->verdicts.len = out->of.len = out->crowded = 0;
     f.most_pairs = MOST_PAIRS + PAIRS_A_PIECE * count;
     bool ok = wall_facets_find(walls, count, &f) && wall_strips_find(&f, params->cell, &strips) &&
-              array_reserve(&out->verdicts, NOC_MAX(count, 1u));
-    if (ok && count)
-        memset(out->verdicts.data, NOC_WALL_SMALL, count);
-    out->verdicts.len = ok ? count : 0;
+              array_reserve(&out->verdicts, NOC_MAX(count, 1u)) && array_reserve(&out->of, NOC_MAX(count, 1u));
+    for (size_t i = 0; ok && i < count; i++) {
+        out->verdicts.data[i] = NOC_WALL_SMALL;
+        out->of.data[i] = CITY_NO_FACADE;
+    }
+    out->verdicts.len = out->of.len = ok ? count : 0;
     building_box b = building_box_of(&f);
     building_use use = city_building_use(id, told, b.hi[2] - b.lo[2], b.width);
     window_maker m = { .box = &b, .use = &use, .params = params, .cover = cover, .most_looks = looks };
@@ -143,4 +151,5 @@ void city_windows_free(city_windows *w) {
     array_free(&w->list);
     array_free(&w->facades);
     array_free(&w->verdicts);
+    array_free(&w->of);
 }

@@ -16,6 +16,8 @@
 #define WINDOW_MERGE_MM 50.0
 #define WINDOW_MERGE_DEG 2.0
 #define WINDOW_GAP_MM 30.0
+/* Before a curved wall a window is flat, and stands so far before it. */
+#define WINDOW_OFFSET_MM 30.0
 /* Pieces side by side, each narrower than so many cells, are a curved wall where they turn by no more than this. */
 #define WINDOW_CURVE_CELLS 1.5
 #define WINDOW_CURVE_DEG 25.0
@@ -27,10 +29,13 @@ typedef struct wall_triangle {
     double p[3][3]; /* local metres, counter-clockwise seen from outside */
 } wall_triangle;
 
+/* It stands WINDOW_OFFSET_MM before the wall; in a flat one it belongs `back` m behind that: in the wall's plane, or so
+ * far before it as pieces of the wall stick out. */
 typedef struct city_window {
     double corner[3], edge_u[3], edge_v[3]; /* faces edge_u x edge_v */
-    uint32_t facade;                        /* of the building, from 0 */
-    int storey, column;                     /* from 0, of its facade */
+    double back;
+    uint32_t facade;    /* of the building, from 0 */
+    int storey, column; /* from 0, of its facade */
     noc_window_kind kind;
     uint64_t hash;     /* of the building's id and the window's place in it */
     float level;       /* lit where the share of lit windows of its kind is above it, 0..1 */
@@ -44,12 +49,18 @@ typedef struct city_facade {
     noc_wall_verdict verdict;
     double area;
     size_t windows;
+    /* Of a flat wall: the grid that its windows are in, from its corner a column and a row on; else no columns. A
+     * window may reach over several of them. */
+    double origin[3], along[3], up[3];
+    uint32_t columns, rows;
 } city_facade;
 
+#define CITY_NO_FACADE UINT32_MAX
 typedef struct city_windows {
     city_window_list list;
     NOC_ARRAY(city_facade) facades;
     NOC_ARRAY(uint8_t) verdicts; /* noc_wall_verdict of each triangle, in the order they were given */
+    NOC_ARRAY(uint32_t) of;      /* the facade of each triangle, or CITY_NO_FACADE */
     size_t crowded;              /* facades that have no windows, or not all: more looks would have been needed */
 } city_windows;
 

@@ -41,7 +41,8 @@ static const built_part parts[] = {
     { noc_keep_traffic, noc_kept_traffic },   { noc_keep_environment, noc_kept_environment },
     { noc_keep_textures, noc_kept_textures }, { noc_keep_materials, noc_kept_materials },
     { noc_keep_classes, noc_kept_classes },   { noc_keep_meshes, noc_kept_meshes },
-    { noc_keep_streets, noc_kept_streets },   { noc_keep_bodies, noc_kept_bodies },
+    { noc_keep_facades, noc_kept_facades },   { noc_keep_streets, noc_kept_streets },
+    { noc_keep_bodies, noc_kept_bodies },
 };
 
 /* All that must be the same where a file is written and where it is read. */
@@ -49,8 +50,8 @@ uint64_t built_layout(void) {
     const uint64_t numbers[] = { sizeof(noc_light_record),  sizeof(noc_scene_group), NOC_CLASS_COUNT,
                                  NOC_LIGHT_KIND_COUNT,      NOC_WINDOW_KIND_COUNT,   NOC_WALL_VERDICT_COUNT,
                                  LIGHT_PROFILE_BITS,        sizeof(noc_scene_stop),  sizeof(noc_scene_car),
-                                 sizeof(noc_scene_profile), sizeof(noc_scene_body),  NOC_COUNT(parts),
-                                 built_report_layout() };
+                                 sizeof(noc_scene_profile), sizeof(noc_scene_body),  sizeof(noc_facade_record),
+                                 sizeof(noc_scene_window),  NOC_COUNT(parts),        built_report_layout() };
     return noct_sum(numbers, sizeof(numbers));
 }
 

@@ -3,6 +3,7 @@
 #include "import/lamps/conditions.h"
 #include "import/load/load.h"
 #include "city/windows/windows.h"
+#include "scene/facade.h"
 
 #include <math.h>
 
@@ -50,14 +51,16 @@ typedef struct maker {
     size_t input; /* its file */
     city_cover *cover;
     noc_pool *pool;
-    NOC_ARRAY(double) area; /* of the buildings' walls, m2 */
-    double all_area;        /* of those that may have windows */
-    double most_looks;      /* before all of these */
-    size_t begin_without;   /* the first building that may have none, and all behind it */
-    size_t crowded;         /* facades whose windows were too costly */
-    scratch *scratch;       /* [threads] */
-    found_building *found;  /* [AT_ONCE] */
-    size_t first;           /* of the buildings that found[0] is */
+    NOC_ARRAY(double) area;      /* of the buildings' walls, m2 */
+    double all_area;             /* of those that may have windows */
+    double most_looks;           /* before all of these */
+    size_t begin_without;        /* the first building that may have none, and all behind it */
+    size_t crowded;              /* facades whose windows were too costly */
+    scratch *scratch;            /* [threads] */
+    found_building *found;       /* [AT_ONCE] */
+    size_t first;                /* of the buildings that found[0] is */
+    NOC_ARRAY(uint32_t) numbers; /* + 1, in the scene, of the facades of the building that is taken; 0: it has none */
+    city_window_list before;     /* its windows that stand before walls */
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
 } maker;
@@ -190,30 +193,34 @@ static bool is_lit(const maker *m, const city_window *w) {
            noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
 }
 
-/* counts: as a window, and is no further pane of one. part: of the glass of the pane before it. */
-static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind kind, const uint32_t *triangles,
-                     size_t count, bool counts, bool part) {
-    noc_pane pane = {
-        .triangles = triangles,
-        .triangle_count = count,
-        .shape = { .kind = kind, .group = m->group },
-        .window = { .level = w->level, .kind = (unsigned char)w->kind, .part = part, .often = NOC_WINDOW_OFTEN }
-    };
-    memcpy(pane.shape.position, w->corner, sizeof(w->corner));
-    memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
-    memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
-    memcpy(pane.window.emission, w->emission, sizeof(w->emission));
+static const char *id_of(const importer *im, const taken_building *b) {
+    const char *name = im->scene->meshes.data[b->first].name;
+    return name ? name : "";
+}
+
+/* counts: as a window, and is no further pane of one. */
+static bool add_pane(maker *m, int mesh, const city_window *w, noc_pane *pane, bool counts) {
+    pane->shape.group = m->group;
+    memcpy(pane->shape.position, w->corner, sizeof(w->corner));
+    memcpy(pane->shape.edge_u, w->edge_u, sizeof(w->edge_u));
+    memcpy(pane->shape.edge_v, w->edge_v, sizeof(w->edge_v));
+    pane->window.level = w->level;
+    pane->window.kind = (unsigned char)w->kind;
+    pane->window.often = NOC_WINDOW_OFTEN;
+    memcpy(pane->window.emission, w->emission, sizeof(w->emission));
     if (!report_pane(m->im->report, m->input, counts)) {
         noc_scene_out_of_memory(m->im->scene);
         return false;
     }
-    return noc_scene_add_window(m->im->scene, mesh, &pane);
+    return noc_scene_add_window(m->im->scene, mesh, pane);
 }
 
-/* All windows of a building are one mesh. */
-static noc_status add_mesh(maker *m, const char *id, const city_window_list *list) {
+/* Those windows of a building that stand before its walls are one mesh. */
+static noc_status add_mesh(maker *m, const char *id, int material, const city_window_list *list) {
     importer *im = m->im;
     m->xyz.len = m->indices.len = 0;
+    if (!list->len)
+        return NOC_OK;
     if (!array_reserve(&m->xyz, 12 * list->len) || !array_reserve(&m->indices, 6 * list->len))
         return no_memory(im);
     for (size_t i = 0; i < list->len; i++) {
@@ -229,17 +236,101 @@ static noc_status add_mesh(maker *m, const char *id, const city_window_list *lis
                       .positions = m->xyz.data,
                       .triangle_count = 2 * list->len,
                       .indices = m->indices.data,
-                      .material = take_material(im, NOC_CLASS_WINDOW, id),
+                      .material = material,
                       .name = *id ? id : NULL };
-    int index = mesh.material < 0 ? -1 : noc_scene_add_mesh(im->scene, &mesh);
+    int index = noc_scene_add_mesh(im->scene, &mesh);
     if (index < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     for (size_t i = 0; i < list->len; i++) {
         const uint32_t both[2] = { 2 * (uint32_t)i, 2 * (uint32_t)i + 1 };
-        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2, true, false))
+        noc_pane pane = { .triangles = both, .triangle_count = 2, .shape = { .kind = NOC_LIGHT_PARALLELOGRAM } };
+        if (!add_pane(m, index, &list->data[i], &pane, true))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
+}
+
+/* ---- windows in walls ---- */
+
+/* The window where it belongs in its flat wall. */
+static city_window put_back(const city_window *w) {
+    city_window in = *w;
+    double n[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        n[k] = w->edge_u[(k + 1) % 3] * w->edge_v[(k + 2) % 3] - w->edge_u[(k + 2) % 3] * w->edge_v[(k + 1) % 3];
+        length += n[k] * n[k];
+    }
+    for (int k = 0; k < 3; k++)
+        in.corner[k] -= w->back / sqrt(length) * n[k];
+    return in;
+}
+
+/* Rays that pass a wall know nothing of windows in it. */
+static bool passes_walls(const importer *im, const taken_building *b) {
+    bool any = false;
+    for (size_t i = b->first; i < b->end; i++)
+        any = any || noc_mesh_lets_through(im->scene, &im->scene->meshes.data[i]);
+    return any;
+}
+
+/* A grid has at most so many cells beside so many a window: walls of odd outlines lie in wide ones. */
+#define LEAST_CELLS 256.0
+#define CELLS_A_WINDOW 16.0
+
+/* The facade's number in the scene, + 1, in *number; 0: its windows stand before it. mesh: of its walls. */
+static noc_status add_facade(const maker *m, const city_facade *f, int material, int mesh, uint32_t *number) {
+    *number = 0;
+    if (!f->windows || !f->columns || (double)f->columns * f->rows > LEAST_CELLS + CELLS_A_WINDOW * (double)f->windows)
+        return NOC_OK;
+    noc_facade facade = { .columns = f->columns, .rows = f->rows, .material = material, .mesh = mesh };
+    memcpy(facade.origin, f->origin, sizeof(f->origin));
+    memcpy(facade.along, f->along, sizeof(f->along));
+    memcpy(facade.up, f->up, sizeof(f->up));
+    *number = noc_scene_add_facade(m->im->scene, &facade);
+    return *number ? NOC_OK : NOC_ERR_MEMORY;
+}
+
+/* Takes what windows lie in their walls; the others come into m->before. */
+static noc_status add_in_walls(maker *m, const taken_building *b, const city_windows *made, int material) {
+    noc_scene *s = m->im->scene;
+    size_t first_wall = b->first;
+    bool none = passes_walls(m->im, b);
+    uint32_t number = 0;
+    noc_class cls = wall_class(m->im, b);
+    while (class_of(s, first_wall) != cls)
+        first_wall++;
+    m->before.len = m->numbers.len = 0;
+    if (!array_reserve(&m->numbers, made->facades.len))
+        return no_memory(m->im);
+    for (size_t i = 0; i < made->facades.len; i++) {
+        number = 0;
+        noc_status status = none ? NOC_OK : add_facade(m, &made->facades.data[i], material, (int)first_wall, &number);
+        if (status)
+            return status;
+        m->numbers.data[m->numbers.len++] = number;
+    }
+    for (size_t i = 0; i < made->list.len; i++) {
+        const city_window *w = &made->list.data[i];
+        city_window in = put_back(w);
+        noc_pane pane = { .shape = { .kind = NOC_LIGHT_PARALLELOGRAM }, .window.facade = m->numbers.data[w->facade] };
+        memcpy(pane.shape.position, in.corner, sizeof(in.corner));
+        memcpy(pane.shape.edge_u, in.edge_u, sizeof(in.edge_u));
+        memcpy(pane.shape.edge_v, in.edge_v, sizeof(in.edge_v));
+        bool ok = pane.window.facade && noc_scene_facade_takes(s, pane.window.facade, &pane.shape)
+                      ? add_pane(m, (int)first_wall, &in, &pane, true)
+                      : array_push(&m->before, *w);
+        if (!ok)
+            return no_memory(m->im);
+    }
+    return NOC_OK;
+}
+
+static noc_status add_windows(maker *m, const taken_building *b, const city_windows *made) {
+    int material = take_material(m->im, NOC_CLASS_WINDOW, id_of(m->im, b));
+    if (material < 0)
+        return NOC_ERR_UNSUPPORTED; /* said by the scene */
+    noc_status status = add_in_walls(m, b, made, material);
+    return status ? status : add_mesh(m, id_of(m->im, b), material, &m->before);
 }
 
 /* Those of the model shine themselves, where they are. */
@@ -250,8 +341,11 @@ static noc_status take_own(maker *m, const own_mesh *o, noc_window_counts *count
         counts->windows += p->leads;
         counts->own += p->leads;
         counts->lit += p->leads && is_lit(m, &p->window);
-        if (!add_pane(m, (int)o->mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
-                      own->triangles.data + p->first, p->count, p->leads, p->part))
+        noc_pane pane = { .triangles = own->triangles.data + p->first,
+                          .triangle_count = p->count,
+                          .shape.kind = p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
+                          .window.part = p->part };
+        if (!add_pane(m, (int)o->mesh, &p->window, &pane, p->leads))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -270,8 +364,9 @@ static void count_walls(const maker *m, const found_building *found, noc_window_
     }
 }
 
-/* Of the triangles that were gathered, in that order. */
-static void keep_verdicts(const maker *m, const taken_building *b, const found_building *found) {
+/* Of the triangles that were gathered, in that order. numbers: facades in the scene, NULL: no window is in a wall. */
+static void keep_verdicts(const maker *m, const taken_building *b, const found_building *found,
+                          const uint32_t *numbers) {
     noc_scene *s = m->im->scene;
     noc_class cls = wall_class(m->im, b);
     size_t n = 0;
@@ -280,15 +375,15 @@ static void keep_verdicts(const maker *m, const taken_building *b, const found_b
         for (size_t t = mesh->first_triangle;
              class_of(s, i) == cls && t < (size_t)mesh->first_triangle + mesh->triangle_count; t++) {
             wall_triangle w = triangle_of(s, t);
-            if (is_wall(m, cls, &w))
-                s->walls.data[t] = found->own ? NOC_WALL_OWN : found->made.verdicts.data[n++];
+            if (!is_wall(m, cls, &w))
+                continue;
+            uint32_t of = found->made.of.data[n];
+            if (numbers && of != CITY_NO_FACADE)
+                s->triangle_facade.data[t] = numbers[of];
+            s->walls.data[t] = found->own ? NOC_WALL_OWN : found->made.verdicts.data[n];
+            n++;
         }
     }
-}
-
-static const char *id_of(const importer *im, const taken_building *b) {
-    const char *name = im->scene->meshes.data[b->first].name;
-    return name ? name : "";
 }
 
 /* Those of a mesh of the building itself. false: memory was refused. */
@@ -329,8 +424,11 @@ static noc_status take_building(maker *m, const taken_building *b, found_buildin
     counts->buildings[b->use]++;
     m->crowded += found->own || b >= &m->im->buildings.data[m->begin_without] ? 0 : found->made.crowded;
     count_walls(m, found, counts);
-    keep_verdicts(m, b, found);
-    return found->own || !found->made.list.len ? NOC_OK : add_mesh(m, id_of(m->im, b), &found->made.list);
+    bool windows = !found->own && found->made.list.len;
+    status = windows ? add_windows(m, b, &found->made) : NOC_OK;
+    if (!status)
+        keep_verdicts(m, b, found, windows ? m->numbers.data : NULL);
+    return status;
 }
 
 static void forget_own(found_building *found) {
@@ -404,6 +502,8 @@ static void put_away(maker *m) {
     if (m->pool)
         noc_pool_destroy(m->pool);
     city_cover_destroy(m->cover);
+    array_free(&m->numbers);
+    array_free(&m->before);
     array_free(&m->xyz);
     array_free(&m->area);
     array_free(&m->indices);
@@ -417,7 +517,8 @@ noc_status windows_add(importer *im) {
         return NOC_OK;
     noc_status status = equip(&m) ? NOC_OK : no_memory(im);
     if (!status)
-        status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
+        status = noc_scene_reserve_walls(im->scene) && noc_scene_reserve_facades(im->scene) ? make_cover(&m)
+                                                                                            : NOC_ERR_MEMORY;
     status = status ? status : add_all(&m);
     if (!status && m.crowded)
         noc_warn(im->log,

@@ -47,6 +47,7 @@ ARRAY(Words, uint)
 ARRAY(Instances, vk_instance_record)
 ARRAY(Panes, vk_pane_record)
 ARRAY(Backs, placing_back)
+ARRAY(Facades, facade_record)
 
 /* vk_entry */
 struct tlas_entry {

@@ -5,6 +5,7 @@
 #include "pixel.glsl"
 
 #include "images.glsl"
+#include "core/facade.h"
 #include "core/primary.h"
 
 /* The albedo that a texture gives the receiver r, 0: none. */
@@ -17,6 +18,25 @@ uint texel_of(ray_hit h, receiver r, place p, uvec3 vertex, bool placed, placeme
     float apart2 = rays_apart2(frame_direction(x, y), frame_direction(x, y + 1u));
     float width = hit_width(h, r.n, apart2, placed ? placement_scale2(m) : 1.0);
     return hit_texel(h, image - 1u, at, width, splat3(HERE.materials.at[h.material].albedo));
+}
+
+/* Where the hit is on a window in the wall: of what that is made, and its light. */
+bool find_window(inout ray_hit h, uint triangle) {
+    uint number = triangle < HERE.facade_triangles ? HERE.triangle_facade.at[triangle] : 0u;
+    if (number == 0u)
+        return false;
+    facade_record of = HERE.facades.at[number - 1u];
+    vec3 p = hit_point(h.at, h.u, h.v);
+    uint cell = facade_cell(facade_of_record(of), p);
+    uint light = cell == NO_CELL ? NO_LIGHT : HERE.facade_cells.at[cell];
+    if (light == NO_LIGHT)
+        return false;
+    light_record l = HERE.lights.at[light];
+    if (!window_covers(splat3(l.p), splat3(l.a), splat3(l.b), p))
+        return false;
+    h.material = of.material;
+    h.light = light;
+    return true;
 }
 
 void main() {
@@ -41,7 +61,7 @@ void main() {
         h.material = HERE.triangle_material.at[triangle];
         h.light = HERE.triangle_light.at[triangle];
         instance = e.instance;
-        bool placed = e.placed != NO_INSTANCE;
+        bool placed = e.placed != NO_INSTANCE, window = !placed && find_window(h, triangle);
         placement m;
         if (placed) {
             m = placement_of_rows(HERE.instances.at[e.placed].transform);
@@ -51,7 +71,7 @@ void main() {
                 triangle = HERE.triangle_count + e.placed; /* a body, for views */
         }
         r = receiver_of_hit(h, placed, m);
-        if (HERE.textured != 0u)
+        if (HERE.textured != 0u && !window)
             texel = texel_of(h, r, p, vertex, placed, m);
     }
     receiver_put(HERE.surfaces, p.block, l, r, texel);
