@@ -5,6 +5,9 @@ set -u
 build=$1
 shift
 rm -f "$build/meson-logs/testlog.json"
+# Where `python3` is a script that looks for one each time (pyenv), tests that call it often would take twice as long.
+found=$(python3 -c 'import sys; print(sys.executable)') && PATH="${found%/*}:$PATH"
+export PATH
 export MESON_TESTTHREADS="${MESON_TESTTHREADS:-$(($(nproc) + 1))}"
 meson test -C "$build" --no-rebuild --print-errorlogs "$@"
 status=$?

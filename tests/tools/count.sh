@@ -85,6 +85,11 @@ chosen 4 >"$work/all"
 report "the turn of a test is its own" "$(grep -vxFf "$work/half" "$work/all")" ""
 : >"$log"
 report "without times all tests are chosen" "$(chosen 1 | wc -l)" "$lines"
+chosen_of_full() { python3 "$source_dir/tools/turn-tests.py" "$build" - "$1" | tr ' ' '\n'; }
+for turn in 1790000003 1790000004 1790000005; do chosen_of_full $turn; done | sort | uniq -c >"$work/turns"
+report "of three turns each test of the suite full has one" \
+    "$(awk '{ print $1 }' "$work/turns" | sort -u | paste -sd' ')" "1 3"
+report "and no test is left out" "$(wc -l <"$work/turns")" "$lines"
 report "what they need is built" \
     "$(chosen 1 targets | grep -cxE 'nocturne|tests/test-base(-test_base)?|fuzz/fuzz_image')" 2
 
