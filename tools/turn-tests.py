@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """turn-tests.py BUILD TIMED TURN [targets]: the tests of BUILD whose turn it is at the TURNth of several runs that
 share the work. Tests that took under a second in the last run of the build folder TIMED are among them always. Of
-longer ones every name has its turn, one in six, whatever else there is. Without that run all of them are. Where TIMED is
-`-`, the quick suite is among them, and a third of the suite `full`. Never among them are those of fuzz/: `make fuzz`
+longer ones every name has its turn, one in six, whatever else there is. Without that run all of them are. Where TIMED
+is `-`, the quick suite is among them, and a third of the suite `full`. Never among them are those of fuzz/: `make fuzz`
 runs their inputs under the sanitizers. With `targets`: what must be built for them."""
 import json
 import sys
