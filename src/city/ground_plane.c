@@ -50,7 +50,7 @@ static size_t next_base(const noc_scene *scene, size_t *mesh, size_t t, size_t e
     while (t < end) {
         const noc_scene_mesh *m = &scene->meshes.data[*mesh];
         size_t mesh_end = (size_t)m->first_triangle + m->triangle_count;
-        if (!m->aloft && t < mesh_end)
+        if (!(m->aloft > 0) && t < mesh_end)
             return t;
         t = NOC_MAX(t, mesh_end);
         ++*mesh;
@@ -387,6 +387,17 @@ struct city_ground {
     size_t first_mesh;
 };
 
+/* Where nothing else tells it: the lowest point, of what begins above the ground the ground below it. */
+static double lowest(const noc_scene *scene) {
+    double z = INFINITY;
+    for (size_t m = 0; m < scene->meshes.len; m++) {
+        const noc_scene_mesh *mesh = &scene->meshes.data[m];
+        for (size_t v = mesh->first_vertex; v < noc_mesh_end_vertex(scene, m); v++)
+            z = NOC_MIN(z, (double)scene->positions.data[3 * v + 2] - (double)mesh->aloft);
+    }
+    return isfinite(z) ? z : 0;
+}
+
 /* Heights from what is known in the cells. False: no memory. */
 static bool settle(city_ground *g) {
     field *f = &g->f;
@@ -394,7 +405,7 @@ static bool settle(city_ground *g) {
     g->known = drop_outliers(f, &lo, &hi) > 0;
     field_measure(f);
     g->level = !g->known || hi - lo < LEVEL;
-    g->z = g->known ? lo : g->scene->indices.len ? g->scene->bounds_min[2] : 0;
+    g->z = g->known ? lo : lowest(g->scene);
     if (g->level) {
         for (size_t i = 0; i < (size_t)f->nx * (size_t)f->ny; i++) {
             f->height[i] = (float)g->z;

@@ -286,7 +286,9 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
         p->facing[0] = sin(lamp->direction * M_PI / 180);
         p->facing[1] = cos(lamp->direction * M_PI / 180);
     }
-    if (site_covered(scene, p->foot[0], p->foot[1], p->foot[2])) {
+    double head = p->foot[2] + (isfinite(lamp->height) ? lamp->height : params->height);
+    if (site_covered(scene, p->foot[0], p->foot[1], p->foot[2]) &&
+        !site_under(scene, p->foot[0], p->foot[1], p->foot[2], head)) {
         double away[2], was[2] = { p->foot[0], p->foot[1] }, z;
         if (!site_free_spot(scene, &p->foot[0], &p->foot[1], p->foot[2], 3, away)) {
             geo_issue(issues, GEO_SKIPPED, "lamp inside a building, further than 3 m from its outside", lamp->id);

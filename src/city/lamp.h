@@ -15,6 +15,8 @@ bool site_ground_far(const noc_scene *scene, double x, double y, double *z);
 bool site_raised(const noc_scene *scene, double x, double y, double z);
 /* Is (x, y), with ground at z, under a roof or in a wall? */
 bool site_covered(const noc_scene *scene, double x, double y, double z);
+/* Is what lies over (x, y), with ground at z, a canopy, whose bottom is there, and is higher than `head`? */
+bool site_under(const noc_scene *scene, double x, double y, double z, double head);
 /* Nearest spot within `reach` that no building covers; away[2] is the unit vector that leads there. */
 bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, double reach, double away[2]);
 /* Unit vector from (x, y) to what a lamp there should light: the nearest road, else away from the nearest building. */

@@ -308,7 +308,7 @@ noc_status city_lay_level_surfaces(noc_scene *scene, size_t first, size_t end, d
 
 /* ---- buildings made of outlines ---- */
 
-static void set_aloft(noc_scene *scene, const city_outline *outlines, size_t count, bool aloft) {
+static void set_aloft(noc_scene *scene, const city_outline *outlines, size_t count, float aloft) {
     for (size_t i = 0; i < count; i++)
         for (size_t m = outlines[i].first; m < outlines[i].end; m++)
             scene->meshes.data[m].aloft = aloft;
@@ -329,8 +329,8 @@ static bool find_outlines(levels *l, const city_outline *outlines, size_t count)
 noc_status city_lay_outlines(noc_scene *scene, const city_outline *outlines, size_t count, double zero,
                              city_level_fn tell, void *user) {
     levels l = { .scene = scene };
-    set_aloft(scene, outlines, count, true); /* they tell nothing of the ground until they lie on it */
+    set_aloft(scene, outlines, count, 1); /* they tell nothing of the ground until they lie on it */
     noc_status status = judge(&l, find_outlines(&l, outlines, count), zero, tell, user);
-    set_aloft(scene, outlines, count, false);
+    set_aloft(scene, outlines, count, 0);
     return status;
 }

@@ -54,6 +54,18 @@ bool site_covered(const noc_scene *scene, double x, double y, double z) {
     return noc_scene_highest(scene, BUILDING, x, y, &top) && top > z + .5;
 }
 
+bool site_under(const noc_scene *scene, double x, double y, double z, double head) {
+    enum { MOST = 64 };
+    const uint32_t bottom = BIT(OTHER) | BIT(INSTALLATION), solid = BUILDING | BIT(GROUND) | bottom;
+    double above = HUGE_VAL, low = HUGE_VAL, at;
+    int met = 0;
+    for (; met < MOST && noc_scene_highest_below(scene, solid, x, y, low, &at) && at > z + .5; met++) {
+        above = low;
+        low = at;
+    }
+    return met && met % 2 == 0 && low > head && noc_scene_highest_below(scene, bottom, x, y, above, &at) && at == low;
+}
+
 bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, double reach, double away[2]) {
     for (double r = .25; r <= reach; r += .25)
         for (int i = 0; i < DIRECTIONS; i++) {

@@ -114,7 +114,7 @@ static void corners_from(const noc_scene *scene, const uint32_t *v, size_t i, co
 }
 
 static bool has_feet(const noc_scene *scene, const noc_scene_mesh *mesh) {
-    return scene->materials.data[mesh->material].cls == NOC_CLASS_WALL && !mesh->aloft;
+    return scene->materials.data[mesh->material].cls == NOC_CLASS_WALL && !(mesh->aloft > 0);
 }
 
 /* m between the points: what small files can make of long walls is bounded. */

@@ -377,7 +377,8 @@ typedef struct vertical_ray {
     const noc_scene *scene;
     double x, y;
     uint32_t classes;
-    double best; /* -DBL_MAX: none yet */
+    double below; /* what is not lower does not count */
+    double best;  /* -DBL_MAX: none yet */
     size_t looked_at;
 } vertical_ray;
 
@@ -385,7 +386,7 @@ static void consider(vertical_ray *r, size_t t) {
     double h;
     r->looked_at++;
     if ((r->classes >> material_of(r->scene, t)->cls & 1) && triangle_height(r->scene, t, r->x, r->y, &h) &&
-        h > r->best)
+        h > r->best && h < r->below)
         r->best = h;
 }
 
@@ -413,12 +414,24 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
 bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
         return false;
-    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .best = -DBL_MAX };
+    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .below = DBL_MAX, .best = -DBL_MAX };
     if (scene->triangle_light.len)
         cast(&r);
     *looks += r.looked_at;
     if (classes >> NOC_CLASS_LAMP & 1)
         noc_bodies_highest(scene, x, y, &r.best);
+    if (r.best == -DBL_MAX)
+        return false;
+    *z = r.best;
+    return true;
+}
+
+bool noc_scene_highest_below(const noc_scene *scene, uint32_t classes, double x, double y, double below, double *z) {
+    if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
+        return false;
+    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .below = below, .best = -DBL_MAX };
+    if (scene->triangle_light.len)
+        cast(&r);
     if (r.best == -DBL_MAX)
         return false;
     *z = r.best;
@@ -434,7 +447,7 @@ bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes) {
 }
 
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
-    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .best = -DBL_MAX };
+    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .below = DBL_MAX, .best = -DBL_MAX };
     cast(&r);
     return r.looked_at;
 }

@@ -51,7 +51,7 @@ typedef struct noc_scene_mesh {
     uint16_t model; /* 0: the world */
     uint16_t group;
     bool removed;     /* its ranges are dead */
-    bool aloft;       /* until the commit: begins above the ground, and tells nothing of it */
+    float aloft;      /* until the commit: m above the ground, where it begins, so that it tells nothing of it; or 0 */
     bool land;        /* until the commit: ground that is no building's */
     bool panes;       /* triangles of it show windows: what it is made of does not shine */
     uint32_t uv;      /* place + 1 of its first vertex in `uv`; 0: it has none */
@@ -577,7 +577,9 @@ noc_status noc_ground_ready(const noc_scene *scene);
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);
-/* The same; adds to *looks the triangles that were looked at, for who bounds them. */
+/* The same among what lies lower than `below`, without bodies of lamps. */
+bool noc_scene_highest_below(const noc_scene *scene, uint32_t classes, double x, double y, double below, double *z);
+/* As noc_scene_highest; adds to *looks the triangles that were looked at, for who bounds them. */
 bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks);
 /* Returns true if vertical rays can meet something of these classes anywhere. */
 bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes);

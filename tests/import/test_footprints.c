@@ -309,6 +309,29 @@ static void test_left(void **state) {
     }
 }
 
+/* A canopy alone on a map is no ground; a lamp whose head is below its bottom stands in free air, a taller one does
+ * not. */
+static void test_canopy(void **state) {
+    char text[1200];
+    (void)state;
+    for (int height = 4; height < 8; height += 3) {
+        snprintf(text, sizeof(text),
+                 "<osm version=\"0.6\"><node id=\"1\" lat=\"52.3410\" lon=\"9.5320\"/>"
+                 "<node id=\"2\" lat=\"52.3410\" lon=\"9.5324\"/><node id=\"3\" lat=\"52.3412\" lon=\"9.5324\"/>"
+                 "<node id=\"4\" lat=\"52.3412\" lon=\"9.5320\"/><node id=\"21\" lat=\"52.3411\" lon=\"9.5322\">"
+                 "<tag k=\"highway\" v=\"street_lamp\"/><tag k=\"height\" v=\"%d\"/></node>"
+                 "<node id=\"22\" lat=\"52.34095\" lon=\"9.5322\"><tag k=\"highway\" v=\"street_lamp\"/></node>"
+                 "<way id=\"100\"><nd ref=\"1\"/><nd ref=\"2\"/><nd ref=\"3\"/><nd ref=\"4\"/><nd ref=\"1\"/>"
+                 "<tag k=\"building\" v=\"roof\"/><tag k=\"height\" v=\"8\"/><tag k=\"min_height\" v=\"6\"/></way>"
+                 "</osm>",
+                 height);
+        load_as(true, write_file("canopy.osm", text));
+        assert_int_equal(scene->lights.len, height < 6 ? 2 : 1);
+        assert_int_equal(line(0, "lamp inside a building, further than 3 m from its outside"), height > 6);
+        assert_float_equal(scene->lights.data[0].p[2], height < 6 ? 4 : 6, .05);
+    }
+}
+
 static size_t of_class(noc_class cls) {
     noc_scene_info info;
     noc_scene_get_info(scene, &info);
@@ -460,17 +483,10 @@ static int finish(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blocks),
-        cmocka_unit_test(test_facing),
-        cmocka_unit_test(test_model_and_terrain),
-        cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_osm),
-        cmocka_unit_test(test_left),
-        cmocka_unit_test(test_units),
-        cmocka_unit_test(test_use),
-        cmocka_unit_test(test_map_surfaces),
-        cmocka_unit_test(test_overpass),
-        cmocka_unit_test(test_overpass_left_out),
+        cmocka_unit_test(test_blocks),       cmocka_unit_test(test_facing),   cmocka_unit_test(test_model_and_terrain),
+        cmocka_unit_test(test_layer),        cmocka_unit_test(test_osm),      cmocka_unit_test(test_canopy),
+        cmocka_unit_test(test_left),         cmocka_unit_test(test_units),    cmocka_unit_test(test_use),
+        cmocka_unit_test(test_map_surfaces), cmocka_unit_test(test_overpass), cmocka_unit_test(test_overpass_left_out),
     };
     return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
 #else

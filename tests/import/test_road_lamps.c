@@ -158,6 +158,32 @@ static const char *valley(void) {
     return write_file("valley.city.json", text);
 }
 
+/* A lamp with an elevation on the deck of a map's bridge does not lift the ground beneath it. */
+static void ground_under_a_bridge(void **state) {
+    static const char *const ele[] = { "", "\"ele\":\"57\"," };
+    double z[2], at[2];
+    (void)state;
+    for (int told_one = 0; told_one < 2; told_one++) {
+        char text[3000];
+        snprintf(
+            text, sizeof(text),
+            MAP(LINE("way/1", "\"highway\":\"primary\",\"bridge\":\"yes\",\"layer\":\"1\"", "[690000,5330000],[690080,5330000]") "," FEATURE(
+                "node/1", "%s\"highway\":\"street_lamp\"",
+                "\"type\":\"Point\",\"coordinates\":[690040,5330005]") "," FEATURE("node/2",
+                                                                                   "\"ele\":\"50\",\"highway\":\"street_lamp\"",
+                                                                                   "\"type\":\"Point\",\"coordinates\":[690040,5330060]") "," FEATURE("node/3",
+                                                                                                                                                      "\"ele\":\"50\",\"highway\":\"street_lamp\"",
+                                                                                                                                                      "\"type\":\"Point\",\"coordinates\":[690040,5329940]")),
+            ele[told_one]);
+        const noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+        load_params(&params, write_file("deck.json", text), NULL);
+        at[0] = 690040 - scene->origin[0];
+        at[1] = 5330005 - scene->origin[1];
+        assert_true(noc_scene_ground(scene, at[0], at[1], &z[told_one]));
+    }
+    assert_float_equal(z[0], z[1], .01);
+}
+
 /* Height of the light near a place, by its easting and northing less 690000 and 5330000; NaN: there is none. */
 static double height_of(double x, double y) {
     for (size_t i = 0; i < scene->lights.len; i++) {
@@ -453,6 +479,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bridge_over_a_valley),
         cmocka_unit_test(beside_a_bridge),
+        cmocka_unit_test(ground_under_a_bridge),
         cmocka_unit_test(on_a_footbridge),
         cmocka_unit_test(bridge_of_pieces),
         cmocka_unit_test(when),

@@ -143,7 +143,7 @@ static noc_status stand(importer *im, const pending_footprint *p, double ground)
     size_t first = im->scene->meshes.len;
     noc_status status = ok ? hand_over(&b) : noc_no_memory(im->log, b.in->path);
     for (size_t i = first; i < im->scene->meshes.len; i++)
-        im->scene->meshes.data[i].aloft = from > 0;
+        im->scene->meshes.data[i].aloft = (float)NOC_MAX(from, 0);
     count_one(b.in);
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&b.surfaces[c]);

@@ -60,8 +60,11 @@ static size_t places_of_lamps(const importer *im, const extent *e, double *point
     size_t count = 0;
     for (size_t i = 0; i < im->lamps.len; i++) {
         const double *p = im->lamps.data[i].lamp.xyz;
-        if (isfinite(p[0]) && isfinite(p[1]) && !(e->any && distance_outside(e, p) > OUTSIDE))
-            memcpy(points + 3 * count++, p, 3 * sizeof(*points));
+        if (!isfinite(p[0]) || !isfinite(p[1]) || (e->any && distance_outside(e, p) > OUTSIDE))
+            continue;
+        memcpy(points + 3 * count++, p, 3 * sizeof(*points));
+        if (im->lamps.data[i].on_bridge)
+            points[3 * count - 1] = NAN;
     }
     return count;
 }
@@ -69,8 +72,11 @@ static size_t places_of_lamps(const importer *im, const extent *e, double *point
 /* Under the city and the lamps that belong to it, through the heights of those that tell them. */
 static noc_status lay_ground(importer *im, const extent *e) {
     double *points = noc_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
-    if (!points)
-        return noc_no_memory(im->log, "import");
+    noc_status marked = points ? road_lamps_on_bridges(im) : noc_no_memory(im->log, "import");
+    if (marked) {
+        free(points);
+        return marked;
+    }
     city_ground *ground = city_ground_start(im->scene, points, places_of_lamps(im, e, points));
     noc_status status = ground && e->any ? heights_check(im, ground) : NOC_OK;
     if (ground)

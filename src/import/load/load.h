@@ -89,6 +89,7 @@ typedef struct pending_lamp {
     size_t input;
     const geo_road *along; /* a lamp that is placed along this one; NULL: it is the input's */
     bool faced;            /* its direction is the way to the nearest road */
+    bool on_bridge;        /* of a map: its elevation may be the deck's, and tells nothing of the ground */
 } pending_lamp;
 
 /* How surfaces of a file look: a geo_appearance that is of use. */
@@ -434,6 +435,9 @@ noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 void road_lamps_face(importer *im, const struct city_roads *roads);
 /* Roads that a lamp at a place stands beside, where that is asked for. */
 lamp_roads road_lamps_near(const importer *im, const double xy[2]);
+/* Tells lamps with an elevation that stand on or beside the carriageways of bridges of maps, where others, too, tell
+ * where the ground is. */
+noc_status road_lamps_on_bridges(importer *im);
 /* Levels the decks of bridges of maps over the ground, which must be there, and no roads on it; lamps on them stand
  * there.
  */

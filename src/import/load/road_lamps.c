@@ -200,6 +200,30 @@ static void put_on_deck(importer *im, const city_roads *roads, pending_lamp *p) 
         lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
 }
 
+noc_status road_lamps_on_bridges(importer *im) {
+    bool bridges = false;
+    size_t others = 0;
+    for (size_t i = 0; i < im->roads.len && !bridges; i++)
+        bridges = im->roads.data[i].bridge;
+    city_roads *roads = bridges ? city_roads_create(im->roads.data, im->roads.len) : NULL;
+    if (bridges && !roads)
+        return noc_no_memory(im->log, "import");
+    for (size_t i = 0; i < im->lamps.len && bridges; i++) {
+        pending_lamp *p = &im->lamps.data[i];
+        double off, off_other;
+        if (!isfinite(p->lamp.xyz[2]))
+            continue;
+        const geo_road *bridge = city_roads_by_bridge(roads, p->lamp.xyz, true, &off, NULL);
+        city_roads_by_bridge(roads, p->lamp.xyz, false, &off_other, NULL);
+        p->on_bridge = bridge && off < off_other && off <= (bridge->cls == GEO_ROAD_PATH ? KERB : EDGE);
+        others += !p->on_bridge;
+    }
+    for (size_t i = 0; i < im->lamps.len && !others; i++)
+        im->lamps.data[i].on_bridge = false;
+    city_roads_destroy(roads);
+    return NOC_OK;
+}
+
 noc_status road_lamps_raise(importer *im) {
     city_roads *own = NULL;
     bool bridges = false;
