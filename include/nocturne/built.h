@@ -22,6 +22,16 @@
 extern "C" {
 #endif
 
+/* A tile of a city that is built in parts: what of a scene is its own, of which it is loaded with those around it. */
+typedef struct noc_tile {
+    /* Of this tile and those around it: their files, as they were loaded, and where these lie, x0, y0, x1, y1 in the
+     * scene's CRS; in the same order whatever the tile */
+    const char *const *paths;
+    const double (*extents)[4];
+    size_t count, own; /* own: which of them it is */
+    const char *key;   /* kept in the file, for who wants to know what it was made of; NULL: none */
+} noc_tile;
+
 typedef struct noc_save_params {
     /* Of the load that made the scene, which a load of the file gives again, but for the folders that its files lay in;
      * NULL, the default: none */
@@ -31,6 +41,10 @@ typedef struct noc_save_params {
     const char *recipe;
     noc_progress progress; /* asked while the file is written, and must not edit the scene; update NULL, the default:
                             * none */
+    /* The part of the scene that is this tile's: objects of its file, and of what files that are no tile's hold, and of
+     * lamps, ground and cars, what lies nearest to its extent (0 within it; of two that are as near the one that comes
+     * first). Surfaces are cut along squares of 8 m. The report is that of its load. NULL, the default: all */
+    const noc_tile *tile;
 } noc_save_params;
 
 /* Writes the scene as a built city. The file appears under its name when it is whole; one that was there is replaced
@@ -41,6 +55,16 @@ NOC_API noc_status noc_scene_save(const noc_scene *scene, const char *path, cons
 
 /* Is the file a built city? By its first bytes; false where it cannot be read. */
 NOC_API bool noc_built_is(const char *path);
+
+/* What a tile's file says of itself. */
+typedef struct noc_tile_info {
+    double extent[4];
+    unsigned long long buildings, windows, lamps, triangles;
+    char key[65]; /* "": none */
+} noc_tile_info;
+
+/* NOC_ERR_FORMAT: it is no built city, or was not saved as a tile; not reported where log is NULL. */
+NOC_API noc_status noc_built_get_tile(const char *path, noc_log *log, noc_tile_info *info);
 
 #define NOC_BUILT_SECTIONS 128
 

@@ -20,6 +20,7 @@
 #include <nocturne/scene.h>
 #include <nocturne/smooth.h>
 #include <nocturne/text.h>
+#include <nocturne/tiles.h>
 
 #ifdef __cplusplus
 extern "C" {

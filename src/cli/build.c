@@ -1,13 +1,18 @@
 /* nocturne build: inputs to one file, a built city. */
-#include "cli.h"
+#include "each.h"
 
+#include <errno.h>
+#include <glob.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct build_args {
     cli_args common;
-    const char *output;
+    const char *output, *part;
     int threads;
+    bool each;
+    double halo;
     int preset; /* of the recipe; not an option here */
     noc_import_params import;
     noc_builtin_params builtin;
@@ -15,13 +20,21 @@ typedef struct build_args {
 #define A build_args
 
 static const noc_option own_options[] = {
-    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE", "built city to write: .noct" },
+    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE",
+      "built city to write: .noct; with --each a folder" },
+    { "each", "Tiles", NOC_OPTION_BOOL, offsetof(A, each), 0, 0, NULL, "",
+      "a built city of each city model, with an index; maps, terrain and lamps are common to all" },
+    { "halo", "Tiles", NOC_OPTION_REAL, offsetof(A, halo), 0, 1e5, NULL, "m",
+      "what a tile is built with around it, and not saved" },
+    CLI_OPTION_PART(A, "Tiles", part),
     { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
-static const build_args defaults = { .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
+static const build_args defaults = { .halo = 200,
+                                     .import = noc_import_default_params(),
+                                     .builtin = noc_builtin_default_params() };
 
 const cli_command cli_build = {
     "build",
@@ -31,6 +44,8 @@ const cli_command cli_build = {
     "  nocturne build city.yaml -o city.noct\n"
     "  nocturne build city.gml lamps.geojson -o city.noct\n"
     "  nocturne render city.noct --hour 23 -o night.png\n"
+    "  nocturne build --each tiles/*.gml lamps.geojson -o built\n"
+    "  nocturne render built --bbox 691000,5335000,692000,5336000 -o night.png\n"
     "The file holds the recipe's cameras and options, too. It is made again where an\n"
     "input changes, or nocturne: it is no format to keep a city in.\n",
     { { options, 0, NULL },
@@ -107,6 +122,26 @@ static char *make_recipe(const build_args *args, noc_log *log) {
 
 /* ---- the build ---- */
 
+static bool given(const build_args *args, const char *name) { return cli_given(&args->common, name); }
+
+/* Of tiles: what makes no sense without them, or with them. */
+static int check_each(const build_args *args) {
+    struct stat st;
+    if (!args->each)
+        return given(args, "halo") || given(args, "part")
+                   ? cli_usage(&cli_build, "--%s is for --each", given(args, "halo") ? "halo" : "part")
+                   : CLI_OK;
+    if (cli_is_built(&args->common))
+        return cli_usage(&cli_build, "--each builds tiles of city models, and %.200s is built", args->common.inputs[0]);
+    if (args->import.bbox)
+        return cli_usage(&cli_build, "--bbox is not for --each: name the tiles that are wanted");
+    if (mkdir(args->output, 0777) && (errno != EEXIST || stat(args->output, &st) || !S_ISDIR(st.st_mode))) {
+        cli_error("%.200s: cannot be a folder: %s", args->output, strerror(errno == EEXIST ? ENOTDIR : errno));
+        return CLI_FAILURE;
+    }
+    return CLI_OK;
+}
+
 static int check(build_args *args) {
     cli_add_named(&args->common, &args->import);
     cli_note_chosen(&args->common, &args->import);
@@ -120,8 +155,9 @@ static int check(build_args *args) {
         if (needed)
             return cli_usage(&cli_build, "--%s is for the input %s", o->name, needed);
     }
-    int status = cli_check_built(&cli_build, &args->common, &args->import);
-    return status ? status : cli_check_output(&cli_build, args->output, CLI_NOCT, &args->common);
+    int status = check_each(args);
+    status = status ? status : cli_check_built(&cli_build, &args->common, &args->import);
+    return status || args->each ? status : cli_check_output(&cli_build, args->output, CLI_NOCT, &args->common);
 }
 
 static void print_summary(const build_args *args, const noc_scene *scene, const noc_report *report, double seconds) {
@@ -177,6 +213,78 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     return status;
 }
 
+/* ---- tiles ---- */
+
+/* A number for all options that a tile is built with, and the files that they name. */
+static uint64_t sum_options(const build_args *args, const char *recipe) {
+    const noc_recipe_info *info = noc_recipe_get_info(args->common.recipe);
+    uint64_t sum = each_sum_text(each_sum_text(0, noc_version()), recipe);
+    sum = each_sum(sum, &args->halo, sizeof(args->halo));
+    for (size_t i = 0; i < args->common.given_count; i++) {
+        const noc_option *o = args->common.given[i];
+        bool import = in_table(noc_import_options(), o), city = in_table(noc_city_options(), o);
+        if ((!import && !city) || !strcmp(o->group, "Reading"))
+            continue;
+        char *text = cli_option_value(o, import ? (const void *)&args->import : (const void *)&args->builtin.city);
+        sum = each_sum_text(each_sum_text(sum, o->name), text);
+        if (text && !strcmp(o->unit, "FILE"))
+            sum = each_sum_file(sum, text);
+        free(text);
+    }
+    return info->path && args->common.recipe ? each_sum_file(sum, info->path) : sum;
+}
+
+/* Patterns that no file is called by, in quotes, are the shell's. free() the array; texts stay. */
+static const char **find_inputs(const build_args *args, size_t *count) {
+    const char **all = NULL;
+    *count = 0;
+    for (size_t i = 0; i < args->common.input_count; i++) {
+        const char *input = args->common.inputs[i];
+        glob_t found = { 0 };
+        struct stat st;
+        bool pattern = stat(input, &st) && strpbrk(input, "*?[") && !glob(input, 0, NULL, &found);
+        size_t more = pattern ? found.gl_pathc : 1;
+        const char **wider = cli_alloc((*count + more + 1) * sizeof(*all));
+        if (all)
+            memcpy(wider, all, *count * sizeof(*all));
+        for (size_t k = 0; k < more; k++)
+            wider[(*count)++] = pattern ? cli_format("%s", found.gl_pathv[k]) : input;
+        globfree(&found);
+        free(all);
+        all = wider;
+    }
+    return all;
+}
+
+static int build_each(build_args *args, noc_log *log) {
+    char *recipe = make_recipe(args, log);
+    if (!recipe)
+        return CLI_FAILURE;
+    size_t count;
+    const char **inputs = find_inputs(args, &count);
+    noc_recipe_lists(args->common.recipe, &args->import);
+    args->import.threads = args->threads;
+    args->import.builtin = &args->builtin;
+    each_build b = { .args = &args->common,
+                     .import = &args->import,
+                     .log = log,
+                     .folder = args->output,
+                     .recipe = recipe,
+                     .options = sum_options(args, recipe),
+                     .halo = args->halo };
+    int status = cli_choose_part(&cli_build, &args->common, args->part, &b.part);
+    status = status ? status : each_look(&b, inputs, count);
+    status = status ? status : each_run(&b);
+    noc_scene_destroy(b.place.scene);
+    for (size_t i = 0; i < b.tiles; i++)
+        free((char *)b.inputs[i].name);
+    free((char *)b.place.crs);
+    free(b.inputs);
+    free(inputs);
+    free(recipe);
+    return status;
+}
+
 static int run(void *arguments) {
     build_args *args = arguments;
     int status = check(args);
@@ -186,6 +294,11 @@ static int run(void *arguments) {
     cli_nothing_to_keep(true);
     cli_progress_start(args->common.quiet);
     noc_log *log = cli_log_create(&args->common);
+    if (args->each) {
+        status = build_each(args, log);
+        noc_log_destroy(log);
+        return cli_flush(stdout) ? status : CLI_FAILURE;
+    }
     noc_scene *scene = noc_scene_create(log);
     status = scene && !build(args, log, scene) ? CLI_OK : CLI_FAILURE;
     noc_scene_destroy(scene);

@@ -21,6 +21,7 @@ typedef struct cli_args {
     const noc_option *given[CLI_GIVEN]; /* options that were set, in order: by the words, then by the recipe */
     size_t given_count, given_by_words; /* those of the words are the first ones */
     size_t said_anew;   /* so many of the first are said beside a built city, whose own recipe says the others */
+    char **opened;      /* files of an index among the inputs, which they point into */
     noc_recipe *recipe; /* among the inputs; NULL: none */
 } cli_args;
 

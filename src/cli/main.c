@@ -69,6 +69,7 @@ static int run(const cli_command *command, int argc, char **argv) {
         status = status ? status : command->run(args);
     }
     noc_recipe_destroy(args->recipe);
+    free(args->opened);
     free(args->inputs);
     free(args->said);
     free(args);

@@ -49,8 +49,56 @@ static int take_options(const cli_command *command, cli_args *args) {
     return CLI_OK;
 }
 
+static noc_import_params *import_of(const cli_command *command, void *arguments) {
+    for (const cli_set *set = command->sets; set->table; set++)
+        if (set->table == noc_import_options)
+            return (noc_import_params *)(void *)((char *)arguments + set->offset);
+    return NULL;
+}
+
+/* The box has done its work: what is built does not ask for it. */
+static void forget_box(cli_args *args, noc_import_params *import) {
+    size_t kept = 0;
+    for (size_t i = 0; i < args->given_count; i++)
+        if (strcmp(args->given[i]->name, "bbox"))
+            args->given[kept++] = args->given[i];
+    args->given_count = kept;
+    import->bbox = NULL;
+}
+
+/* Tiles in the place of an index that is an input, those that meet --bbox. */
+static int open_index(const cli_command *command, void *arguments) {
+    cli_args *args = arguments;
+    noc_import_params *import = import_of(command, arguments);
+    bool any = false;
+    int status = CLI_OK;
+    for (size_t i = 0; i < args->input_count && import && !status; i++) {
+        char **tiles;
+        size_t count;
+        if (!noc_tiles_is(args->inputs[i]))
+            continue;
+        if (any)
+            return cli_usage(command, "%.200s: is a second index of tiles; one is opened", args->inputs[i]);
+        noc_log *log = cli_log_create(args);
+        status = noc_tiles_find(args->inputs[i], import->bbox, log, &tiles, &count) ? CLI_FAILURE : CLI_OK;
+        noc_log_destroy(log);
+        if (status)
+            break;
+        args->opened = tiles;
+        replace_input(args, i, &(noc_recipe_info){ .input_count = count, .inputs = (const char *const *)tiles });
+        any = true;
+        i += count - 1;
+    }
+    if (any)
+        forget_box(args, import);
+    return status;
+}
+
 int cli_use_recipe(const cli_command *command, void *arguments) {
     cli_args *args = arguments;
+    int opened = open_index(command, arguments);
+    if (opened)
+        return opened;
     size_t index = args->input_count;
     args->given_by_words = args->given_count;
     args->said = cli_alloc(sizeof(char *) * (args->input_count + 1));

@@ -32,6 +32,9 @@ bool import_fits(const import_budget *b, double bytes);
 /* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
 double import_json_cost(const char *text, size_t size);
 
+/* map/package.c: writes a GeoPackage of a GeoJSON's features. Where GDAL is not there it is none, which is no error. */
+noc_status map_write_package(const char *geojson, const char *path, noc_log *log);
+
 /* json.c: json_load_callback, whose allocations may be refused. */
 json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags,
                          json_error_t *error);

@@ -1,5 +1,6 @@
 /* The parts of a built city, in the order in which they are read. */
 #include "import/built/built.h"
+#include "import/built/cut.h"
 #include "scene/keep.h"
 
 #include <nocturne/built.h>
@@ -55,14 +56,8 @@ uint64_t built_layout(void) {
     return noct_sum(numbers, sizeof(numbers));
 }
 
-noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_save_params *params) {
-    if (!scene || !path)
-        return noc_null(scene ? scene->log : NULL, __func__);
-    if (!scene->committed || scene->edits.len || scene->added)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: the scene is not committed, or edits of it are not",
-                         path);
-    if (params && params->recipe && strlen(params->recipe) > MOST_RECIPE)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: its recipe has more than 1 MiB", path);
+static noc_status save(const noc_scene *scene, const char *path, const noc_save_params *params,
+                       const noc_report *report) {
     noc_status status;
     noct_writer *w = noct_create(path, built_layout(), scene->log, &status);
     if (!w)
@@ -74,10 +69,36 @@ noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_sa
         parts[i].write(w, scene);
     }
     noc_scene_unlock_read(scene);
-    built_write_report(w, params ? params->report : NULL);
+    built_write_report(w, report);
+    if (params && params->tile)
+        built_write_tile(w, scene, report, params->tile);
     if (params && params->recipe)
         noct_put_array(w, RECIPE, params->recipe, strlen(params->recipe), 1);
     return noct_close(w, NOC_OK);
+}
+
+static noc_status save_tile(const noc_scene *scene, const char *path, const noc_save_params *params) {
+    noc_scene *part;
+    noc_report *told;
+    if (!params->report || params->tile->own >= params->tile->count || !params->tile->paths[params->tile->own])
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: a tile needs the report of its load, and its file",
+                         path);
+    noc_status status = built_cut(scene, params->report, params->tile, &part, &told);
+    status = status ? status : save(part, path, params, told);
+    built_cut_free(part, told);
+    return status;
+}
+
+noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_save_params *params) {
+    if (!scene || !path)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    if (!scene->committed || scene->edits.len || scene->added)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: the scene is not committed, or edits of it are not",
+                         path);
+    if (params && params->recipe && strlen(params->recipe) > MOST_RECIPE)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: its recipe has more than 1 MiB", path);
+    return params && params->tile ? save_tile(scene, path, params)
+                                  : save(scene, path, params, params ? params->report : NULL);
 }
 
 noc_status built_read(importer *im, const char *path) {

@@ -193,7 +193,11 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         geo_lamp lamp = p->lamp;
         geo_fitting fitting;
         luminaires_dress(im, in, road_lamps_near(im, lamp.xyz), &lamp, &fitting);
+        size_t first = im->scene->lights.len;
         int lights = city_add_lamp(im->scene, &lamp, params, false, in->issues);
+        report_lamp mapped = { (uint32_t)first, (uint32_t)im->scene->lights.len, (uint32_t)p->input };
+        if (lights > 0 && !array_push(&im->report->mapped, mapped))
+            return noc_no_memory(im->log, in->path);
         in->file.lights += lights > 0 ? (size_t)lights : 0;
         in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
         *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;

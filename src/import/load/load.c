@@ -433,15 +433,39 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
     return NOC_OK;
 }
 
-/* Files of windows: from their numbers among the inputs to those in the report. */
-static void number_panes(importer *im) {
-    for (size_t i = 0; im->report && i < im->report->panes.len; i++) {
-        report_panes *p = &im->report->panes.data[i];
-        uint32_t number = 0;
-        for (size_t k = 0; k < p->file; k++)
-            number += im->inputs[k].started;
-        p->file = number;
+/* The meshes of each file; those of a map's buildings are chosen as wholes. */
+static noc_status keep_parts(importer *im) {
+    noc_report *report = im->report;
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < im->input_count; i++) {
+        const input *in = &im->inputs[i];
+        report_part part = { (uint32_t)in->first_mesh, (uint32_t)in->end_mesh, i, false, 0, 0 };
+        ok = !in->started || part.first == part.end || array_push(&report->parts, part);
     }
+    for (size_t i = 0; ok && i < im->buildings.len; i++) {
+        const taken_building *b = &im->buildings.data[i];
+        report_part part = { b->first, b->end, (uint32_t)b->input, true, b->first, b->end };
+        bool inside = b->first >= im->inputs[b->input].first_mesh && b->end <= im->inputs[b->input].end_mesh;
+        ok = inside || array_push(&report->parts, part);
+    }
+    return ok ? NOC_OK : noc_no_memory(im->log, "import");
+}
+
+/* Of each input, from its number to that of its file in the report. */
+static void number_files(importer *im) {
+    noc_report *report = im->report;
+    uint32_t *number = report ? noc_calloc(im->input_count + 1, sizeof(*number)) : NULL;
+    for (size_t i = 0; number && i < im->input_count; i++)
+        number[i + 1] = number[i] + im->inputs[i].started;
+    for (size_t i = 0; number && i < report->panes.len; i++)
+        report->panes.data[i].file = number[report->panes.data[i].file];
+    for (size_t i = 0; number && i < report->parts.len; i++)
+        report->parts.data[i].file = number[report->parts.data[i].file];
+    for (size_t i = 0; number && i < report->mapped.len; i++)
+        report->mapped.data[i].file = number[report->mapped.data[i].file];
+    if (!number && report)
+        report->panes.len = report->parts.len = report->mapped.len = 0;
+    free(number);
 }
 
 /* alone: of built cities, to which CRSs and boxes are words of its past. */
@@ -521,8 +545,10 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = report_groups(im.report, scene);
     if (status == NOC_ERR_CANCELLED)
         noc_cancelled(scene->log, "import: cancelled");
+    if (!status && !built && !inspect)
+        status = keep_parts(&im);
     if (!built)
-        number_panes(&im);
+        number_files(&im);
     for (size_t i = 0; i < im.input_count; i++) {
         if (inspect)
             im.inputs[i].file.lamps_dropped = im.inputs[i].lamps_lost;

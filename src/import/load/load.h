@@ -332,6 +332,17 @@ typedef struct report_panes {
     uint32_t file, counts, panes;
 } report_panes;
 
+/* What a tile needs to know of a scene: meshes of a file, which are chosen as a whole by
+ * where those from `from` to `to` lie, and lights of a lamp. */
+typedef struct report_part {
+    uint32_t first, end, file;
+    bool whole;
+    uint32_t from, to;
+} report_part;
+typedef struct report_lamp {
+    uint32_t first, end, file;
+} report_lamp;
+
 /* each_lamp.c: what the report tells of each lamp, where params ask for it. */
 /* A lamp is stood next, as the rules have it. matched: places of the rules. in NULL: it is placed by a rule, and what
  * no rule says of it (said: 1 << NOC_LAMP_HEIGHT ...) is assumed. */
@@ -348,7 +359,9 @@ struct noc_report {
     size_t group_count;
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
-    NOC_ARRAY(report_panes) panes; /* files are numbers of inputs until all are reported */
+    NOC_ARRAY(report_panes) panes; /* files are numbers of inputs until all are reported; */
+    NOC_ARRAY(report_part) parts;  /* so are these, of which later ones win, */
+    NOC_ARRAY(report_lamp) mapped; /* and these */
     size_t lamps_inferred;
     size_t road_cars; /* along roads of maps */
     size_t roads_drawn;

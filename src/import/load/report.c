@@ -56,6 +56,8 @@ void noc_report_destroy(noc_report *report) {
     array_free(&report->lamps);
     array_free(&report->files);
     array_free(&report->panes);
+    array_free(&report->parts);
+    array_free(&report->mapped);
     arena_free(&report->arena);
     free(report);
 }

@@ -425,10 +425,15 @@ static noc_status take_building(maker *m, const taken_building *b, found_buildin
     m->crowded += found->own || b >= &m->im->buildings.data[m->begin_without] ? 0 : found->made.crowded;
     count_walls(m, found, counts);
     bool windows = !found->own && found->made.list.len;
+    size_t meshes = m->im->scene->meshes.len;
     status = windows ? add_windows(m, b, &found->made) : NOC_OK;
     if (!status)
         keep_verdicts(m, b, found, windows ? m->numbers.data : NULL);
-    return status;
+    report_part part = { (uint32_t)meshes,   (uint32_t)m->im->scene->meshes.len,
+                         (uint32_t)b->input, true,
+                         b->first,           b->end };
+    bool kept = part.first == part.end || array_push(&m->im->report->parts, part);
+    return status || kept ? status : no_memory(m->im);
 }
 
 static void forget_own(found_building *found) {

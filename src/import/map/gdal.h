@@ -39,7 +39,7 @@
     X(OGR_L_GetNextFeature) X(OGR_L_GetSpatialRef) X(OGR_L_ResetReading) X(OGRRegisterAll) X(OSRExportToWktEx)         \
     X(OSRGetAuthorityCode) X(OSRGetAuthorityName) X(OSRIsCompound) X(OSRIsGeographic) X(VSIFCloseL)                    \
     X(VSIFEofL) X(VSIFileFromMemBuffer) X(VSIFOpenL) X(VSIFReadL) X(VSIFree) X(VSIGetMemFileBuffer) X(VSIReadDir)      \
-    X(VSIUnlink)
+    X(VSIUnlink) X(GDALDatasetCopyLayer)
 /* clang-format on */
 
 typedef struct gdal_functions {
