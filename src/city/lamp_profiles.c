@@ -57,8 +57,11 @@ static noc_status load(kept_profile *k, const char *path, noc_log *log) {
     if (info.upward > MOST_UPWARD)
         noc_warn(log, "%s: sends %.0f %% of its light upward, as no street light does", path, 100 * info.upward);
     if (info.lumens < LEAST_LUMENS || info.lumens > MOST_LUMENS)
-        noc_warn(log, "%s: makes %.3g lm, as no street light does: lamps without lumens of their own shine by it", path,
-                 info.lumens);
+        noc_warn(
+            log,
+            "%s: its flux is %.3g lm, which no street light has: lamps that tell neither lumens nor watts shine with "
+            "that, so is it a distribution for a flux that is said elsewhere?",
+            path, info.lumens);
     return NOC_OK;
 }
 

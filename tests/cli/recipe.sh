@@ -191,4 +191,11 @@ wrong = {k: (scene.get(k), v) for k, v in expected.items() if scene.get(k) != v}
 assert not wrong, wrong
 END
 result $? "a scene as JSON"
+# Materials of a class that nothing is of.
+cp "$source_dir/tests/cli/city.gml" idle.gml
+printf 'nocturne: 1\ninputs: [idle.gml]\nmaterials: { road: W3, roof: { albedo: 0.3 } }\n' >idle.yaml
+run influence idle.yaml --region point:678020,5403002
+[ "$status" = 0 ] && grep -q 'materials: nothing in the scene is of the class road$' err && ! grep -q 'class roof' err
+result $? "materials of a class that nothing is of are told"
+
 finish

@@ -182,6 +182,12 @@ static void test_transparency(void **state) {
         { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 0.5, 0, 1], \"metallicFactor\": 0}, "
           "\"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 1}}",
           (0.2126f + 0.5f * 0.7152f) * 0.96f },
+        { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1]}, "
+          "\"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 1}}",
+          0 }, /* metallicFactor is 1 */
+        { "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1], \"metallicFactor\": 0.25}, "
+          "\"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 1}}",
+          0.75f * 0.5f * 0.96f },
         { "\"alphaMode\": 7, \"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 1, 1, 0.25]}", 0 },
         { "\"alphaMode\": \"BLEND\", \"emissiveFactor\": [1, 1, 1], \"pbrMetallicRoughness\": "
           "{\"baseColorFactor\": [1, 1, 1, 0.25]}",
@@ -200,6 +206,8 @@ static void test_transparency(void **state) {
         assert_int_equal(skipped_count(&l, "alpha mode that is not known"), strstr(rows[i].material, "7,") != NULL);
         assert_int_equal(skipped_count(&l, "out of range, clamped"), rows[i].clamped);
         assert_int_equal(skipped_count(&l, "transparent material that emits"), i + 1 == NOC_COUNT(rows));
+        assert_int_equal(skipped_count(&l, "glass that is a metal by its metallicFactor"),
+                         strstr(rows[i].material, "0.25}, \"ext") || strstr(rows[i].material, "1]}, \"ext"));
         assert_int_equal(skipped_count(&l, "coloured glass"), strstr(rows[i].material, "0.5, 0, 1") != NULL);
         unload(&l);
         free(text);

@@ -366,7 +366,7 @@ static void test_turned_profiles(void **state) {
 static void test_no_street_light(void **state) {
     (void)state;
     static const char *const files[][2] = { { "90 180\n0\n500 500\n", "sends 100 % of its light upward" },
-                                            { "0 90\n0\n.159154943 .159154943\n", "makes 1 lm" },
+                                            { "0 90\n0\n.159154943 .159154943\n", "its flux is 1 lm" },
                                             { "0 180\n0\n500 0\n", "" } }; /* a globe's half upward */
     noc_import_params params = noc_import_default_params();
     for (size_t i = 0; i < 3; i++) {

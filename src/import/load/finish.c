@@ -77,6 +77,21 @@ static noc_status set_all_named(noc_scene *scene, const noc_import_params *param
     return status;
 }
 
+/* Classes of what is made of triangles in the scene, models among it; of lamps also where they have bodies. */
+static uint32_t classes_of(const noc_scene *scene) {
+    uint32_t there = scene->bodies.len ? 1u << NOC_CLASS_LAMP : 0;
+    for (size_t t = 0; t < scene->triangle_material.len; t++)
+        there |= 1u << scene->materials.data[scene->triangle_material.data[t]].cls;
+    return there;
+}
+
+static void warn_of_idle(const noc_scene *scene, uint32_t said) {
+    uint32_t idle = said ? said & ~classes_of(scene) : 0;
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        if (idle >> c & 1)
+            noc_warn(scene->log, "materials: nothing in the scene is of the class %s", noc_class_name((noc_class)c));
+}
+
 noc_status finish_materials(noc_scene *scene, const noc_import_params *params) {
     static const noc_class rained[] = { NOC_CLASS_ROAD, NOC_CLASS_SIDEWALK, NOC_CLASS_TERRAIN, NOC_CLASS_GROUND };
     noc_material of[NOC_CLASS_COUNT];
@@ -91,6 +106,7 @@ noc_status finish_materials(noc_scene *scene, const noc_import_params *params) {
         of[cls] = params->materials[i];
         said |= 1u << cls;
     }
+    warn_of_idle(scene, said);
     bool wet = params->wet || scene->wet;
     for (size_t i = 0; i < NOC_COUNT(rained) && wet; i++) {
         if (scene->wet && !(said >> rained[i] & 1))

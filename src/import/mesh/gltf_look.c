@@ -31,9 +31,10 @@ static bool is_coloured(const double rgb[3]) {
 }
 
 /* What of the light goes through. Alpha of 1 - a lets a share of a through; so does thin glass of that transmission,
- * in the colour that it has. cutoff: alpha of the texture under which there is no surface. */
-static void let_through(const gltf *g, const json_t *m, const double base[4], double luminance, const char *name,
-                        bool textured, uint8_t *cutoff, noc_material *out) {
+ * in the colour that it has, as far as it is no metal (`glassy`). cutoff: alpha of the texture under which there is no
+ * surface. */
+static void let_through(const gltf *g, const json_t *m, const double base[4], double luminance, double glassy,
+                        const char *name, bool textured, uint8_t *cutoff, noc_material *out) {
     const json_t *said = json_object_get(m, "alphaMode");
     const char *mode = json_string_value(said);
     const json_t *glass = gltf_extension(m, "KHR_materials_transmission");
@@ -41,7 +42,7 @@ static void let_through(const gltf *g, const json_t *m, const double base[4], do
     double said_least = mask ? gltf_number(m, "alphaCutoff", 0.5) : 0.5;
     double said_clear = gltf_number(glass, "transmissionFactor", 0);
     double alpha = limited(base[3], 0, 1), least = limited(said_least, 0, 1), clear = limited(said_clear, 0, 1);
-    double through = clear * luminance * (1 - out->f0);
+    double through = clear * luminance * glassy * (1 - DIELECTRIC);
     *cutoff = 0;
     if (!in_share(said_least) || !in_share(said_clear) || ((blend || mask) && !in_share(base[3])))
         geo_issue(g->issues, GEO_GUESSED, "material values out of range, clamped", name);
@@ -49,6 +50,9 @@ static void let_through(const gltf *g, const json_t *m, const double base[4], do
         geo_issue(g->issues, GEO_GUESSED, "alpha mode that is not known, taken as opaque", name);
     if (json_object_get(glass, "transmissionTexture"))
         geo_issue(g->issues, GEO_GUESSED, "texture of transmission, which is not read", name);
+    if (clear > 0 && glassy < 1)
+        geo_issue(g->issues, GEO_GUESSED, "glass that is a metal by its metallicFactor, which lets no light through",
+                  name);
     if (noc_material_shines(out)) {
         if (blend || mask || through > 0)
             geo_issue(g->issues, GEO_GUESSED, "transparent material that emits, taken as opaque", name);
@@ -99,7 +103,7 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     out.f0 = (float)limited(f0, 0, 1);
     out.roughness = (float)limited(roughness, 0.05, 1);
     out.two_sided = json_is_true(json_object_get(m, "doubleSided"));
-    let_through(g, m, base, luminance, name, textured, cutoff, &out);
+    let_through(g, m, base, luminance, 1 - metallic, name, textured, cutoff, &out);
     return out;
 }
 
