@@ -284,6 +284,80 @@ static void check_holes(struct work *w) {
     }
 }
 
+/* An interior ring by its edges: the same whichever point it begins at. */
+typedef struct hole {
+    uint64_t edges;
+    size_t ring;
+} hole;
+
+static int compare_holes(const void *a, const void *b) {
+    const hole *x = a, *y = b;
+    return x->edges != y->edges ? (x->edges > y->edges) - (x->edges < y->edges)
+                                : (x->ring > y->ring) - (x->ring < y->ring);
+}
+
+static uint64_t mix(uint64_t h, const double *xyz) {
+    uint64_t bits[3];
+    memcpy(bits, xyz, sizeof(bits));
+    for (int k = 0; k < 3; k++)
+        h = ((h ^ bits[k]) * 0xd6e8feb86659fd93u ^ h >> 29) * 0x9e3779b97f4a7c15u;
+    return h ^ h >> 32;
+}
+
+/* Keyed with what a file's author does not know: no two other rings can be made to have the same. */
+static uint64_t sum_of_edges(const double *xyz, size_t n) {
+    uint64_t sum = n, secret = base_secret();
+    for (size_t i = 0; i < n; i++)
+        sum += mix(mix(secret, xyz + 3 * i), xyz + 3 * ((i + 1) % n));
+    return sum;
+}
+
+/* Marks interior rings that are exactly an earlier one by a sum that is no number. */
+static bool mark_repeated(struct work *w) {
+    size_t count = w->ring_size.len - 1, first = w->ring_size.data[0];
+    hole *holes = noc_alloc(count * sizeof(*holes));
+    if (!holes)
+        return false;
+    for (size_t r = 1; r <= count; first += w->ring_size.data[r++])
+        holes[r - 1] = (hole){ sum_of_edges(w->xyz.data + 3 * first, w->ring_size.data[r]), r };
+    qsort(holes, count, sizeof(*holes), compare_holes);
+    for (size_t i = 1; i < count; i++) {
+        if (holes[i].edges != holes[i - 1].edges)
+            continue;
+        if (holes[i].ring > MOST_HOLES) /* the others are counted */
+            geo_issue(w->issues, GEO_REPAIRED, "interior ring given twice", w->id);
+        w->ring_sum.data[3 * holes[i].ring] = NAN;
+    }
+    free(holes);
+    return true;
+}
+
+/* Drops interior rings that are given twice: cutting them out again changes nothing, and the tessellator's time grows
+ * with the square of the points at one place. */
+static void drop_repeated(struct work *w) {
+    if (w->ring_size.len < 3)
+        return;
+    if (!mark_repeated(w)) {
+        w->no_memory = true;
+        return;
+    }
+    size_t kept = 1, to = w->ring_size.data[0], from = to;
+    for (size_t r = 1; r < w->ring_size.len; r++) {
+        size_t n = w->ring_size.data[r];
+        if (!isnan(w->ring_sum.data[3 * r])) {
+            memmove(w->xyz.data + 3 * to, w->xyz.data + 3 * from, 3 * n * sizeof(double));
+            memmove(w->uv.data + 2 * to, w->uv.data + 2 * from, 2 * n * sizeof(double));
+            memmove(w->given.data + to, w->given.data + from, n * sizeof(size_t));
+            w->ring_size.data[kept++] = n;
+            to += n;
+        }
+        from += n;
+    }
+    w->ring_size.len = kept;
+    w->xyz.len = 3 * to;
+    w->uv.len = 2 * to;
+}
+
 /* Room was reserved. */
 static void put_ring(struct work *w, size_t n) {
     double *sum = w->ring_sum.data + w->ring_sum.len;
@@ -349,7 +423,8 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         geo_issue(w->issues, GEO_REPAIRED, "spike", w->id);
     project(w);
     check_holes(w);
-    return true;
+    drop_repeated(w);
+    return !w->no_memory;
 }
 
 static double corner(const double *uv, size_t a, size_t b, size_t c) {

@@ -147,6 +147,21 @@ static void test_holes(void **state) {
                  "interior ring given twice");
     expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), 5, 2, 0, 2, 2, 0, 2, 5, 0, 5, 5, 0 }, three, 3), 91,
                  "interior ring given twice");
+    enum { MANY = 3000 }; /* of one hole, which would all meet at its corners; and a last one that is another */
+    double *many = noc_alloc(sizeof(double[12 * (MANY + 2)]));
+    size_t *sizes = noc_alloc(sizeof(size_t[MANY + 2]));
+    for (size_t r = 0; r < MANY + 2; r++) {
+        double ring[2][12] = { { SQUARE(0, 0, 10) }, { HOLE(2, 2, 3) } }, last[12] = { HOLE(6, 6, 2) };
+        memcpy(many + 12 * r, r == MANY + 1 ? last : ring[r > 0], sizeof(last));
+        sizes[r] = 4;
+    }
+    struct result once = run(many, sizes, MANY + 2);
+    assert_close(once.area, 100 - 9 - 4, 1e-9);
+    assert_int_equal(once.triangles, 12 + 2 * 2 - 2);
+    geo_issues_destroy(once.issues);
+    expect_issue(run(many, sizes, MANY + 2), 87, "interior ring given twice");
+    free(many);
+    free(sizes);
     struct result nested = run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 5), HOLE(3, 3, 1) }, three, 3);
     assert_close(nested.area, 75, 1e-9);
     geo_issues_destroy(nested.issues);

@@ -74,14 +74,15 @@ void cg_fill_heights(cg_parser *p) {
     for (size_t i = 0; i < o->surfaces.len; i++) {
         const cg_polygon *polygon = polygon_of(o, i);
         flat = flat || (polygon && polygon->flat);
-        for (size_t k = 0; polygon && !polygon->flat && k < points_of(polygon); k++)
+        size_t points = polygon && !polygon->flat ? points_of(polygon) : 0;
+        for (size_t k = 0; k < points; k++)
             low = NOC_MIN(low, polygon->xyz[3 * k + 2]);
     }
     for (size_t i = 0; flat && isfinite(low) && i < o->surfaces.len; i++) {
         cg_polygon *polygon = polygon_of(o, i);
         if (!polygon || !polygon->flat)
             continue;
-        for (size_t k = 0; k < points_of(polygon); k++)
+        for (size_t k = 0, points = points_of(polygon); k < points; k++)
             polygon->xyz[3 * k + 2] = low;
         cg_issue(p, GEO_GUESSED, "surface without heights: put at the lowest height of its object",
                  cg_report_id(p, polygon->id, o->geometries.data[o->surfaces.data[i].geometry].feature));
