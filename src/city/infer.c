@@ -14,9 +14,8 @@
 #define WALL_DISTANCE 3.0 /* m in front of a wall */
 #define KERB_DISTANCE 0.6 /* m behind the road's edge */
 #define MAX_LAMPS 200000
-/* At triangles of roads and at lamps beside a place, and beside those so many a triangle of the scene: a second or two.
- */
-#define MOST_LOOKS 100000000u
+/* Of vertical rays (noc_ground_looked) and at lamps beside a place: noc_ground_most_looks, and so many a triangle of
+ * the scene. */
 #define LOOKS_A_TRIANGLE 200u
 
 /* ---- places that are taken, by cells as large as the spacing ---- */
@@ -74,21 +73,24 @@ typedef struct inference {
     geo_issues *issues;
     spots *spots;
     int lights, lamps;
-    size_t looks, most_looks;
-    size_t triangles; /* before the first lamp */
-    uint8_t *inner;   /* inner_edges of each, found in the first round */
+    size_t looked, most_looks; /* looked: by vertical rays before the first lamp */
+    size_t triangles;          /* before the first lamp */
+    uint8_t *inner;            /* inner_edges of each, found in the first round */
     const noc_progress *progress;
     double done; /* 0..1 */
     unsigned asked;
     bool cancelled;
 } inference;
 
+/* By rays and at lamps, so far. */
+static size_t looks(const inference *in) { return noc_ground_looked(in->scene) - in->looked + in->spots->looks; }
+
 /* Asks now and then whether to go on. */
 static bool go_on(inference *in) {
     if (in->asked++ % 256 == 0 && in->progress && in->progress->update &&
         !in->progress->update(in->progress->user, "lamps", in->done))
         in->cancelled = true;
-    return !in->cancelled && !in->scene->no_memory && in->looks + in->spots->looks <= in->most_looks;
+    return !in->cancelled && !in->scene->no_memory && looks(in) <= in->most_looks;
 }
 
 /* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
@@ -153,8 +155,7 @@ static void along_edge(inference *in, const float *a, const float *b, double off
 static bool road_beside(inference *in, const float *a, const float *b, double off) {
     double d[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, length = hypot(d[0], d[1]), z;
     double x = (a[0] + (double)b[0]) / 2 + off * d[1] / length, y = (a[1] + (double)b[1]) / 2 - off * d[0] / length;
-    return noc_scene_highest_within(in->scene, 1u << NOC_CLASS_ROAD, x, y, &z, &in->looks) &&
-           fabs(z - (a[2] + (double)b[2]) / 2) < 2;
+    return noc_scene_highest(in->scene, 1u << NOC_CLASS_ROAD, x, y, &z) && fabs(z - (a[2] + (double)b[2]) / 2) < 2;
 }
 
 /* An edge of a triangle of road, so that what is right of it is outside: counter-clockwise, seen from above. */
@@ -227,10 +228,11 @@ noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, co
                      .issues = issues,
                      .progress = progress,
                      .spots = noc_calloc(1, sizeof(spots)),
+                     .looked = noc_ground_looked(scene),
                      .triangles = scene->triangle_light.len };
     noc_scene_info info;
     *lights = 0;
-    in.most_looks = MOST_LOOKS + LOOKS_A_TRIANGLE * in.triangles;
+    in.most_looks = noc_ground_most_looks + LOOKS_A_TRIANGLE * in.triangles;
     in.inner = noc_alloc(NOC_MAX(in.triangles, 1u));
     if (!in.spots || !in.inner) {
         free(in.spots);
@@ -247,7 +249,7 @@ noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, co
     }
     if (!roads)
         around_buildings(&in);
-    if (in.looks + in.spots->looks > in.most_looks)
+    if (looks(&in) > in.most_looks)
         noc_warn(
             scene->log,
             "lamps by a rule end after %d: so many edges of roads or walls lie over one another that finding where "

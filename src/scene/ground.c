@@ -379,7 +379,7 @@ typedef struct vertical_ray {
     uint32_t classes;
     double below; /* what is not lower does not count */
     double best;  /* -DBL_MAX: none yet */
-    size_t looked_at;
+    size_t looked_at, most;
 } vertical_ray;
 
 static void consider(vertical_ray *r, size_t t) {
@@ -390,7 +390,8 @@ static void consider(vertical_ray *r, size_t t) {
         r->best = h;
 }
 
-static void cast(vertical_ray *r) {
+/* Returns false if it has ended early, as there were more triangles than it may look at. */
+static bool cast(vertical_ray *r) {
     const struct noc_ground *g = ground_of(r->scene);
     for (uint64_t levels = g ? g->levels : 0; levels; levels &= levels - 1) {
         int level = __builtin_ctzll(levels);
@@ -400,24 +401,56 @@ static void cast(vertical_ray *r) {
         size_t b = bucket_of(g, level, (int64_t)floor(r->x * scale), (int64_t)floor(r->y * scale));
         uint32_t first = g->offsets[b], end = g->offsets[b + 1];
         bool sorted = end - first > LONG;
-        for (uint32_t i = first; i < end && !(sorted && r->best >= top_of(r->scene, g->ids[i])); i++)
+        for (uint32_t i = first; i < end && !(sorted && r->best >= top_of(r->scene, g->ids[i])); i++) {
+            if (r->looked_at == r->most)
+                return false;
             consider(r, g->ids[i]);
-        for (uint32_t l = g->chains ? g->chains[b] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
+        }
+        for (uint32_t l = g->chains ? g->chains[b] : NO_LINK; l != NO_LINK; l = g->links.data[l].next) {
+            if (r->looked_at == r->most)
+                return false;
             consider(r, g->links.data[l].triangle);
+        }
     }
+    return true;
+}
+
+/* ---- what all rays of a load may look at ---- */
+
+size_t noc_ground_most_looks = 30000000; /* half a second; the cities measured take 5 million at most */
+#define LOOKS_A_TRIANGLE 200
+#define LOOKS_A_RAY 32 /* in the densest city of those measured they are 30 where most lies over one another */
+#define RAY_LOOKS 8    /* as many as a ray costs that finds nothing to look at */
+
+/* Casts the ray of a scene that may not be committed yet, and so is being made of files. */
+static void cast_within(vertical_ray *r) {
+    if (r->scene->committed) {
+        cast(r);
+        return;
+    }
+    noc_ground_work *work = &((noc_scene *)r->scene)->ground_work;
+    size_t rays = __atomic_add_fetch(&work->rays, 1, __ATOMIC_RELAXED),
+           looks = __atomic_load_n(&work->looks, __ATOMIC_RELAXED),
+           all = noc_ground_most_looks + LOOKS_A_TRIANGLE * r->scene->triangle_light.len + LOOKS_A_RAY * rays;
+    r->most = all > looks ? NOC_MAX(all - looks, (size_t)LOOKS_A_RAY) : (size_t)LOOKS_A_RAY;
+    if (!cast(r))
+        __atomic_add_fetch(&work->cut, 1, __ATOMIC_RELAXED);
+    __atomic_add_fetch(&work->looks, r->looked_at, __ATOMIC_RELAXED);
+}
+
+size_t noc_ground_looked(const noc_scene *scene) {
+    return __atomic_load_n(&scene->ground_work.looks, __ATOMIC_RELAXED) +
+           RAY_LOOKS * __atomic_load_n(&scene->ground_work.rays, __ATOMIC_RELAXED);
 }
 
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z) {
-    return noc_scene_highest_within(scene, classes, x, y, z, &(size_t){ 0 });
-}
-
-bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
         return false;
-    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .below = DBL_MAX, .best = -DBL_MAX };
+    vertical_ray r = {
+        .scene = scene, .x = x, .y = y, .classes = classes, .below = DBL_MAX, .best = -DBL_MAX, .most = SIZE_MAX
+    };
     if (scene->triangle_light.len)
-        cast(&r);
-    *looks += r.looked_at;
+        cast_within(&r);
     if (classes >> NOC_CLASS_LAMP & 1)
         noc_bodies_highest(scene, x, y, &r.best);
     if (r.best == -DBL_MAX)
@@ -429,9 +462,11 @@ bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x
 bool noc_scene_highest_below(const noc_scene *scene, uint32_t classes, double x, double y, double below, double *z) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8))
         return false;
-    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .below = below, .best = -DBL_MAX };
+    vertical_ray r = {
+        .scene = scene, .x = x, .y = y, .classes = classes, .below = below, .best = -DBL_MAX, .most = SIZE_MAX
+    };
     if (scene->triangle_light.len)
-        cast(&r);
+        cast_within(&r);
     if (r.best == -DBL_MAX)
         return false;
     *z = r.best;
@@ -447,7 +482,9 @@ bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes) {
 }
 
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
-    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .below = DBL_MAX, .best = -DBL_MAX };
+    vertical_ray r = {
+        .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .below = DBL_MAX, .best = -DBL_MAX, .most = SIZE_MAX
+    };
     cast(&r);
     return r.looked_at;
 }

@@ -216,6 +216,12 @@ enum { NOC_ENVIRONMENT_SEEN = 8192, NOC_ENVIRONMENT_LIGHTS = 2048 }; /* columns 
 enum { NOC_ENVIRONMENT_TEXELS = 1 << 23 };                           /* that light: fewer than these */
 
 /* How often commits have changed what. A follower compares with what it has seen. */
+/* What vertical rays have done before the first commit. Atomic: several threads may ask. */
+typedef struct noc_ground_work {
+    size_t rays, looks; /* looks: at triangles */
+    size_t cut;         /* rays that have ended early, as too many triangles lie over one another */
+} noc_ground_work;
+
 typedef struct noc_scene_versions {
     uint64_t commits;     /* that changed anything */
     uint64_t geometry;    /* meshes added or removed, of the world or in new models */
@@ -346,6 +352,7 @@ struct noc_scene {
     size_t page_bytes;
     bool no_memory;            /* was refused and reported: nothing more is added, and it cannot be committed */
     struct noc_ground *ground; /* built on first use of noc_scene_ground; freed with the scene */
+    noc_ground_work ground_work;
 };
 
 /* Adds what lies around the city, to the horizon. It is rendered and that is all: bounds, cameras and vertical rays do
@@ -573,14 +580,17 @@ noc_status noc_scene_out_of_memory(noc_scene *scene);
 void noc_ground_free(struct noc_ground *ground);
 /* Makes it now: NOC_ERR_MEMORY, or rays of a scene that is not changed any more will not ask for memory. */
 noc_status noc_ground_ready(const noc_scene *scene);
+/* What vertical rays have cost so far, until the first commit: triangles that were looked at, and 8 a ray. Together
+ * they may look at noc_ground_most_looks, 200 a triangle of the scene, and 32 a ray; those beyond that end with what
+ * they have after 32, and are counted as cut. */
+size_t noc_ground_looked(const noc_scene *scene);
+extern size_t noc_ground_most_looks; /* changed by tests alone */
 /* Highest surface of any class but closures and what shines of lamps at (x, y), for placing cameras. */
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);
 /* The same among what lies lower than `below`, without bodies of lamps. */
 bool noc_scene_highest_below(const noc_scene *scene, uint32_t classes, double x, double y, double below, double *z);
-/* As noc_scene_highest; adds to *looks the triangles that were looked at, for who bounds them. */
-bool noc_scene_highest_within(const noc_scene *scene, uint32_t classes, double x, double y, double *z, size_t *looks);
 /* Returns true if vertical rays can meet something of these classes anywhere. */
 bool noc_scene_has_classes(const noc_scene *scene, uint32_t classes);
 /* How many triangles a ray at (x, y) looks at: what a query costs. */

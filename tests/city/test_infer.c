@@ -214,12 +214,43 @@ static void test_infer_is_bounded(void **state) {
     }
 }
 
+/* Walls that are long needles, each over a part of all others: rays look at hundreds of them. */
+static void test_infer_is_bounded_by_walls(void **state) {
+    (void)state;
+    size_t most = noc_ground_most_looks;
+    noc_ground_most_looks = 5000000;
+    for (int many = 0; many < 2; many++) {
+        noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep });
+        noc_scene *scene = noc_scene_create(log);
+        *told = 0;
+        noc_material wall = noc_class_material(NOC_CLASS_WALL);
+        int material = noc_scene_add_material(scene, &wall);
+        for (int i = 0; i < (many ? 2000 : 4); i++) {
+            double a = i * 2.4, b = a + 2, c = a + 4, r = 5000;
+            double xyz[] = { r * sin(a), r * cos(a), 0, r * sin(b), r * cos(b), 0, r * sin(c), r * cos(c), 9 };
+            noc_mesh mesh = { .vertex_count = 3,
+                              .positions = xyz,
+                              .triangle_count = 1,
+                              .indices = (uint32_t[]){ 0, 1, 2 },
+                              .material = material };
+            assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+        }
+        infer(scene);
+        assert_int_equal(strstr(told, "lamps by a rule end after") != NULL, many);
+        /* one more lamp at most: some hundred rays */
+        assert_true(!many || noc_ground_looked(scene) < 5000000 + 2000u * 200 + 1000u * 2000);
+        noc_scene_destroy(scene);
+        noc_log_destroy(log);
+    }
+    noc_ground_most_looks = most;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_infer_cancelled),  cmocka_unit_test(test_infer_roads),
         cmocka_unit_test(test_infer_buildings),  cmocka_unit_test(test_skirts),
         cmocka_unit_test(test_add_ground),       cmocka_unit_test(test_ground_is_bounded),
-        cmocka_unit_test(test_infer_is_bounded),
+        cmocka_unit_test(test_infer_is_bounded), cmocka_unit_test(test_infer_is_bounded_by_walls),
     };
     return cmocka_run_group_tests_name("city/infer", tests, NULL, NULL);
 }

@@ -339,12 +339,39 @@ static void test_thin(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* A thousand triangles reach to one height over one place, so that no ray can know the highest before it has looked at
+ * all. What all rays look at before the commit is bounded, and those that end early are counted. */
+static void test_looks_are_bounded(void **ctx) {
+    (void)ctx;
+    enum { N = 1000, RAYS = 2000 };
+    size_t most = noc_ground_most_looks;
+    noc_scene *scene = noc_scene_create(NULL);
+    int mat = material(scene, NOC_CLASS_TERRAIN);
+    for (int i = 0; i < N; i++)
+        add_triangle(scene, mat, (double[]){ -100, -100 - .01 * i, 0, 100, -100, 0, 0, 200, 10 });
+    noc_ground_most_looks = 0;
+    double z;
+    for (int i = 0; i < RAYS; i++)
+        assert_true(noc_scene_ground(scene, -1 + .001 * i, 0, &z));
+    size_t looked = noc_ground_looked(scene);
+    assert_true(looked <= 200 * N + (32 + 8) * RAYS + 32 && looked > 200 * N);
+    assert_true(scene->ground_work.cut > RAYS / 2 && scene->ground_work.cut < RAYS);
+    noc_ground_most_looks = most;
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    looked = noc_ground_looked(scene);
+    assert_true(noc_scene_ground(scene, 0, 0, &z));
+    assert_int_equal(noc_ground_looked(scene), looked); /* who looks around later may look as long as it takes */
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
-        cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),       cmocka_unit_test(test_two_continents),
-        cmocka_unit_test(test_thin),       cmocka_unit_test(test_stack),
+        cmocka_unit_test(test_classes),        cmocka_unit_test(test_highest_wins),
+        cmocka_unit_test(test_random),         cmocka_unit_test(test_watertight),
+        cmocka_unit_test(test_ask_and_add),    cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_wide),           cmocka_unit_test(test_beyond),
+        cmocka_unit_test(test_two_continents), cmocka_unit_test(test_looks_are_bounded),
+        cmocka_unit_test(test_thin),           cmocka_unit_test(test_stack),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -539,6 +539,11 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = finish_materials(scene, params);
     if (!status && scene->sources.refused)
         status = noc_no_memory(scene->log, "import");
+    if (!status && scene->ground_work.cut)
+        noc_warn(scene->log,
+                 "so many triangles lie over one another that %zu vertical rays ended early: what stands on the ground "
+                 "there may have a wrong height or place",
+                 scene->ground_work.cut);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (!status && !inspect)
