@@ -446,12 +446,12 @@ static void test_luminances(void **state) {
     assert_true(n > 100 && y[n / 2] > 16 && y[n / 2] < 64);
 }
 
-/* Triangles for facets, and how many pairs of them are looked at until those are found. */
+/* Triangles for facets, and how many of them and of groups of them are looked at until those are found. */
 static size_t looked_at(const wall_triangle *t, size_t count, size_t facets) {
     wall_facets f = { 0 };
     assert_true(wall_facets_find(t, count, &f));
     size_t looked = f.looked_at;
-    print_message("# %zu triangles, %zu facets: %zu pairs\n", count, f.facets.len, looked);
+    print_message("# %zu triangles, %zu facets: %zu looks\n", count, f.facets.len, looked);
     assert_int_equal(f.facets.len, facets);
     assert_int_equal(f.by_facet.len, count);
     wall_facets_free(&f);
@@ -500,6 +500,25 @@ static void test_bounded_pairs(void **state) {
     assert_int_equal(city_windows_make("b", NOC_USE_FLATS, comb, FEW, &p, NULL, SIZE_MAX, &out), NOC_OK);
     assert_int_equal(out.crowded, 0);
     assert_int_equal(out.facades.len, FEW);
+    city_windows_free(&out);
+}
+
+/* Large pieces across one another: hardly two lie in one plane, but groups of them may, wherever one looks. */
+static void test_bounded_groups(void **state) {
+    (void)state;
+    enum { COUNT = 3 * MANY };
+    static wall_triangle tangle[COUNT];
+    const noc_window_params p = noc_window_default_params();
+    city_windows out = { 0 };
+    uint32_t die = 1;
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 9; k++) {
+            die = 1664525 * die + 1013904223;
+            tangle[i].p[k / 3][k % 3] = (double)(die >> 8) * 0x1p-24 * 100;
+        }
+    assert_int_equal(city_windows_make("b", NOC_USE_FLATS, tangle, COUNT, &p, NULL, SIZE_MAX, &out), NOC_OK);
+    assert_int_equal(out.crowded, 1);
+    assert_int_equal(out.list.len, 0);
     city_windows_free(&out);
 }
 
@@ -569,11 +588,14 @@ static void test_crowded(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),          cmocka_unit_test(test_pieces),     cmocka_unit_test(test_doubles),
-        cmocka_unit_test(test_shapes),        cmocka_unit_test(test_curved),     cmocka_unit_test(test_party),
-        cmocka_unit_test(test_uses),          cmocka_unit_test(test_inside),     cmocka_unit_test(test_order),
-        cmocka_unit_test(test_levels),        cmocka_unit_test(test_luminances), cmocka_unit_test(test_many_pieces),
-        cmocka_unit_test(test_no_memory),     cmocka_unit_test(test_crowded),    cmocka_unit_test(test_bounded_pairs),
+        cmocka_unit_test(test_grid),          cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_doubles),       cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_curved),        cmocka_unit_test(test_party),
+        cmocka_unit_test(test_uses),          cmocka_unit_test(test_inside),
+        cmocka_unit_test(test_order),         cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_luminances),    cmocka_unit_test(test_many_pieces),
+        cmocka_unit_test(test_no_memory),     cmocka_unit_test(test_crowded),
+        cmocka_unit_test(test_bounded_pairs), cmocka_unit_test(test_bounded_groups),
         cmocka_unit_test(test_bounded_tests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

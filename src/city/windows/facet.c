@@ -241,11 +241,10 @@ static bool add_piece(growth *g, uint32_t piece, uint32_t number) {
 /* What lies in the plane and touches a piece, as far as it has no facet. */
 static bool add_neighbours(growth *g, uint32_t at, const wall_plane *plane, uint32_t number) {
     const wall_piece *pieces = g->facets->pieces.data;
-    if (!near_pieces_find(g->near, &pieces[at], plane, &g->found))
+    if (!near_pieces_find(g->near, &pieces[at], plane, &g->found, &g->facets->looked_at))
         return false;
     size_t kept = 0;
-    g->facets->looked_at += g->found.len;
-    g->facets->cut = g->facets->most_pairs && g->facets->looked_at > g->facets->most_pairs;
+    g->facets->cut = g->facets->most_looks && g->facets->looked_at > g->facets->most_looks;
     for (size_t i = 0; i < g->found.len; i++) {
         uint32_t b = g->found.data[i];
         if (in_plane(plane, &pieces[b]) && ranked_touch(g, at, b))

@@ -155,13 +155,15 @@ static bool may_hold(const near_node *n, const wall_piece *from, const wall_plan
     return facing > least - SLACK && fabs(off) - reach <= WINDOW_MERGE_MM / 1000 + SLACK * size;
 }
 
-bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_plane *plane, near_found *found) {
+bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_plane *plane, near_found *found,
+                      size_t *looks) {
     size_t stack[64], depth = 0;
     found->len = 0;
     stack[depth++] = 0;
     while (depth) {
         size_t at = stack[--depth];
         const near_node *n = &t->nodes[at];
+        ++*looks;
         if (!may_hold(n, from, plane))
             continue;
         if (n->count > LEAF) {
@@ -173,5 +175,6 @@ bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_p
             if (t->pieces[t->ids[i]].facet == NO_FACET && !array_push(found, t->ids[i]))
                 return false;
     }
+    *looks += found->len;
     return true;
 }

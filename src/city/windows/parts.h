@@ -48,8 +48,8 @@ typedef struct wall_facets {
     NOC_ARRAY(wall_piece) pieces;
     NOC_ARRAY(facet) facets;
     NOC_ARRAY(uint32_t) by_facet; /* indices of pieces, facet after facet */
-    size_t looked_at;             /* pairs of pieces, until the facets were found */
-    size_t most_pairs;            /* that may be looked at; 0: all */
+    size_t looked_at;             /* pieces and groups of them, until the facets were found */
+    size_t most_looks;            /* 0: any number */
     bool cut;                     /* more would have been needed: facets are not all there is of them */
 } wall_facets;
 
@@ -72,9 +72,10 @@ near_pieces *near_pieces_make(const wall_piece *pieces, size_t count) NOC_MUST_U
 void near_pieces_free(near_pieces *t);
 /* Takes one out, once: it has a facet. */
 void near_pieces_take(near_pieces *t, uint32_t piece);
-/* Those left that may lie in the plane and touch `from`, and some more, in any order. False: no memory. */
-bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_plane *plane,
-                      near_found *found) NOC_MUST_USE;
+/* Those left that may lie in the plane and touch `from`, and some more, in any order. Adds to *looks how many pieces
+ * and groups of them were looked at. False: no memory. */
+bool near_pieces_find(const near_pieces *t, const wall_piece *from, const wall_plane *plane, near_found *found,
+                      size_t *looks) NOC_MUST_USE;
 
 /* Facets side by side, unrolled: s runs along them, t up. */
 typedef struct strip_part {

@@ -52,10 +52,10 @@ static size_t drop_hidden(city_window_list *list, size_t first, const city_cover
     return hidden;
 }
 
-/* What the windows of a building may cost: pairs of pieces of wall that facets are found by, and tests of pieces under
- * cells. A piece takes up to 20 and 41 in the cities of shared/data. */
-#define MOST_PAIRS 2000000u
-#define PAIRS_A_PIECE 200u
+/* What the windows of a building may cost: looks at pieces of wall, and at groups of them, that facets are found by,
+ * and tests of pieces under cells. A piece takes up to 111 and 41 in the cities of shared/data. */
+#define MOST_LOOKS 2000000u
+#define LOOKS_A_PIECE 400u
 #define MOST_TESTS 5000000u
 #define TESTS_A_PIECE 400u
 
@@ -122,7 +122,7 @@ noc_status city_windows_make(const char *id, noc_building_use told, const wall_t
     wall_facets f = { 0 };
     wall_strips strips = { 0 };
     out->list.len = out->facades.len = out->verdicts.len = out->of.len = out->crowded = 0;
-    f.most_pairs = MOST_PAIRS + PAIRS_A_PIECE * count;
+    f.most_looks = MOST_LOOKS + LOOKS_A_PIECE * count;
     bool ok = wall_facets_find(walls, count, &f) && wall_strips_find(&f, params->cell, &strips) &&
               array_reserve(&out->verdicts, NOC_MAX(count, 1u)) && array_reserve(&out->of, NOC_MAX(count, 1u));
     for (size_t i = 0; ok && i < count; i++) {

@@ -21,9 +21,9 @@ enum { AT_ONCE = 256 }; /* buildings that are found before they are taken */
  * bench/blocks.py have .13 windows a byte and take 2,700 looks a triangle; seven cities of CityGML have at most .11 and
  * take 3 to 270. */
 #define MOST_WINDOWS 1e6
-#define WINDOWS_A_BYTE 4.0
-#define MOST_LOOKS 2e8 /* a second or two */
-#define LOOKS_A_TRIANGLE 16000.0
+#define WINDOWS_A_BYTE 1.0
+#define MOST_LOOKS 1e8 /* a second */
+#define LOOKS_A_TRIANGLE 8000.0
 
 /* Windows that a mesh of a building is itself. */
 typedef struct own_mesh {
