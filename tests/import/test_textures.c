@@ -1,6 +1,8 @@
 /* Appearances of CityGML: which surfaces get which image and colour, the right way round, and what is of no use. */
 #include "looks.h"
 
+#include "import/load/load.h"
+
 #define WALL(id, x)                                                                                                    \
     "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing gml:id='" id "r'><gml:posList "     \
     "srsDimension='3'>" x " 0 0 " x " 5 0 " x " 5 5 " x " 0 5 " x " 0 0</gml:posList></gml:LinearRing>"                \
@@ -142,6 +144,28 @@ static void copy_file(const char *from, const char *to, size_t most) {
 
 static int texture_of_wall(const noc_scene *s, int number) { return wall_material(s, number)->texture; }
 
+/* A large image of one colour is next to no bytes: images have no more pixels than theirs explain. */
+static void test_pixels_are_bounded(void **state) {
+    (void)state;
+    double before = look_least_pixels;
+    noc_image *black = noc_image_create(1024, 1024, NULL);
+    noc_report *report;
+    write_image("a.png");
+    assert_int_equal(noc_image_write(black, in_folder("large.png"), NULL, NULL, NULL), NOC_OK);
+    noc_image_destroy(black);
+    write_file("city.gml", HEAD TEXTURE("large.png", "p1r", SQUARE) TEXTURE("a.png", "p2r", SQUARE) TAIL);
+    for (int bounded = 0; bounded < 2; bounded++) {
+        look_least_pixels = bounded ? 4 : before;
+        noc_scene *s = load("city.gml", true, &report);
+        assert_int_equal(texture_of_wall(s, 0) > 0, !bounded);
+        assert_true(texture_of_wall(s, 1) > 0);
+        assert_int_equal(told(report, "beyond the pixels"), bounded);
+        noc_report_destroy(report);
+        noc_scene_destroy(s);
+    }
+    look_least_pixels = before;
+}
+
 /* Files that hold the same are one texture, whatever their names; what is of no use is counted for each. */
 static void test_alike(void **state) {
     (void)state;
@@ -238,8 +262,13 @@ static void test_halved(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_citygml),        cmocka_unit_test(test_targets), cmocka_unit_test(test_transparency),
-        cmocka_unit_test(test_broken),         cmocka_unit_test(test_halved),  cmocka_unit_test(test_alike),
+        cmocka_unit_test(test_citygml),
+        cmocka_unit_test(test_targets),
+        cmocka_unit_test(test_pixels_are_bounded),
+        cmocka_unit_test(test_transparency),
+        cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_halved),
+        cmocka_unit_test(test_alike),
         cmocka_unit_test(test_many_materials),
     };
     return run_looks(tests, NOC_COUNT(tests));

@@ -525,6 +525,7 @@ void look_free(reading *r);
 noc_status look_material(importer *im, const input *in, noc_class cls, const surface_look *look, int *material);
 /* mesh_place.image */
 noc_status look_mesh_image(void *reading, int material, const mesh_image *image);
+extern double look_least_pixels; /* that images of a load may have, beside some a byte; changed by tests alone */
 void look_images_free(importer *im);
 /* Reads the images, when all surfaces are there, and gives them to their materials. */
 noc_status look_read_images(importer *im);

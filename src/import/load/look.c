@@ -332,6 +332,26 @@ static double bytes_of(const scene_image *i) {
     return i->width && !i->like ? (double)noc_texture_words(width, height) * sizeof(uint32_t) : 0;
 }
 
+double look_least_pixels = 1e8;
+#define PIXELS_A_BYTE 100.0 /* a photograph has 5 to 20, an even colour as PNG some hundreds */
+
+/* Images of one colour take next to no bytes, and seconds to read: those beyond what all may have are of no use. */
+static void limit_pixels(importer *im) {
+    double most = look_least_pixels, sum = 0;
+    for (size_t i = 0; i < im->images.len; i++)
+        most += im->images.data[i].like ? 0 : PIXELS_A_BYTE * (double)im->images.data[i].bytes;
+    for (size_t i = 0; i < im->images.len; i++) {
+        scene_image *image = &im->images.data[i];
+        double pixels = image->like ? 0 : (double)image->width * image->height;
+        sum += pixels;
+        if (sum <= most)
+            continue;
+        sum -= pixels;
+        image->width = image->height = 0;
+        image->reason = "image beyond the pixels that images of so few bytes may have";
+    }
+}
+
 /* Leaves finest levels out until all fit: of the largest first, so that none is finer than it need be. */
 static void fit(importer *im) {
     double most = im->params->texture_memory * 1e6, sum = 0, largest = 0;
@@ -445,8 +465,10 @@ noc_status look_read_images(importer *im) {
         status = read_sizes(im, pool, jobs);
     if (!status)
         status = find_alike(im);
-    if (!status)
+    if (!status) {
+        limit_pixels(im);
         fit(im);
+    }
     if (!status)
         status = read_pixels(im, pool, jobs);
     if (!status)
