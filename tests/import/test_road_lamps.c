@@ -158,6 +158,17 @@ static const char *valley(void) {
     return write_file("valley.city.json", text);
 }
 
+#define LAMP_AT(id, keys, place)                                                                                       \
+    FEATURE(id, keys "\"highway\":\"street_lamp\"", "\"type\":\"Point\",\"coordinates\":[" place "]")
+#define DECK "\"highway\":\"primary\",\"bridge\":\"yes\",\"layer\":\"1\""
+/* clang-format off */
+#define BRIDGE_AND_LAMPS                                                                                               \
+    MAP(LINE("way/1", DECK, "[690000,5330000],[690080,5330000]") ","                                                   \
+        LAMP_AT("node/1", "%s", "690040,5330005") ","                                                                  \
+        LAMP_AT("node/2", "\"ele\":\"50\",", "690040,5330060") ","                                                     \
+        LAMP_AT("node/3", "\"ele\":\"50\",", "690040,5329940"))
+/* clang-format on */
+
 /* A lamp with an elevation on the deck of a map's bridge does not lift the ground beneath it. */
 static void ground_under_a_bridge(void **state) {
     static const char *const ele[] = { "", "\"ele\":\"57\"," };
@@ -165,16 +176,7 @@ static void ground_under_a_bridge(void **state) {
     (void)state;
     for (int told_one = 0; told_one < 2; told_one++) {
         char text[3000];
-        snprintf(
-            text, sizeof(text),
-            MAP(LINE("way/1", "\"highway\":\"primary\",\"bridge\":\"yes\",\"layer\":\"1\"", "[690000,5330000],[690080,5330000]") "," FEATURE(
-                "node/1", "%s\"highway\":\"street_lamp\"",
-                "\"type\":\"Point\",\"coordinates\":[690040,5330005]") "," FEATURE("node/2",
-                                                                                   "\"ele\":\"50\",\"highway\":\"street_lamp\"",
-                                                                                   "\"type\":\"Point\",\"coordinates\":[690040,5330060]") "," FEATURE("node/3",
-                                                                                                                                                      "\"ele\":\"50\",\"highway\":\"street_lamp\"",
-                                                                                                                                                      "\"type\":\"Point\",\"coordinates\":[690040,5329940]")),
-            ele[told_one]);
+        snprintf(text, sizeof(text), BRIDGE_AND_LAMPS, ele[told_one]);
         const noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
         load_params(&params, write_file("deck.json", text), NULL);
         at[0] = 690040 - scene->origin[0];
