@@ -122,6 +122,14 @@ static noc_camera camera;
     P(0, noc_built_is(NULL) == false)                                                                                  \
     P(0, noc_built_get_info(NULL, NULL, &(noc_built_info){ 0 }) == NOC_ERR_ARGUMENT)                                   \
     P(0, noc_built_get_info("a.noct", NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
+    P(0, noc_built_get_tile(NULL, NULL, &(noc_tile_info){ 0 }) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_built_get_tile("a.noct", NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
+    P(0, noc_tiles_write(NULL, NULL, NULL, 0, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_tiles_write("a", NULL, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_tiles_is(NULL) == false)                                                                                  \
+    P(0, noc_tiles_find(NULL, NULL, NULL, &(char **){ 0 }, &(size_t){ 0 }) == NOC_ERR_ARGUMENT)                        \
+    P(0, noc_tiles_find("a", NULL, NULL, NULL, &(size_t){ 0 }) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_tiles_find("a", NULL, NULL, &(char **){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, noc_built_get_recipe(NULL, NULL, &(char *){ 0 }) == NOC_ERR_ARGUMENT)                                         \
     P(0, noc_built_get_recipe("a.noct", NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_scene_get_light(NULL, 0, &(noc_light_info){ 0 }) == NOC_ERR_ARGUMENT)                                     \
