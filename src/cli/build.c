@@ -234,9 +234,9 @@ static uint64_t sum_options(const build_args *args, const char *recipe) {
     return info->path && args->common.recipe ? each_sum_file(sum, info->path) : sum;
 }
 
-/* Patterns that no file is called by, in quotes, are the shell's. free() the array; texts stay. */
-static const char **find_inputs(const build_args *args, size_t *count) {
-    const char **all = NULL;
+/* Patterns that no file is called by, in quotes, are the shell's. The caller frees the array, and each text. */
+static char **find_inputs(const build_args *args, size_t *count) {
+    char **all = NULL;
     *count = 0;
     for (size_t i = 0; i < args->common.input_count; i++) {
         const char *input = args->common.inputs[i];
@@ -244,11 +244,11 @@ static const char **find_inputs(const build_args *args, size_t *count) {
         struct stat st;
         bool pattern = stat(input, &st) && strpbrk(input, "*?[") && !glob(input, 0, NULL, &found);
         size_t more = pattern ? found.gl_pathc : 1;
-        const char **wider = cli_alloc((*count + more + 1) * sizeof(*all));
+        char **wider = cli_alloc((*count + more + 1) * sizeof(*all));
         if (all)
             memcpy(wider, all, *count * sizeof(*all));
         for (size_t k = 0; k < more; k++)
-            wider[(*count)++] = pattern ? cli_format("%s", found.gl_pathv[k]) : input;
+            wider[(*count)++] = cli_format("%s", pattern ? found.gl_pathv[k] : input);
         globfree(&found);
         free(all);
         all = wider;
@@ -261,7 +261,7 @@ static int build_each(build_args *args, noc_log *log) {
     if (!recipe)
         return CLI_FAILURE;
     size_t count;
-    const char **inputs = find_inputs(args, &count);
+    char **inputs = find_inputs(args, &count);
     noc_recipe_lists(args->common.recipe, &args->import);
     args->import.threads = args->threads;
     args->import.builtin = &args->builtin;
@@ -273,13 +273,15 @@ static int build_each(build_args *args, noc_log *log) {
                      .options = sum_options(args, recipe),
                      .halo = args->halo };
     int status = cli_choose_part(&cli_build, &args->common, args->part, &b.part);
-    status = status ? status : each_look(&b, inputs, count);
+    status = status ? status : each_look(&b, (const char *const *)inputs, count);
     status = status ? status : each_run(&b);
     noc_scene_destroy(b.place.scene);
     for (size_t i = 0; i < b.tiles; i++)
         free((char *)b.inputs[i].name);
     free((char *)b.place.crs);
     free(b.inputs);
+    for (size_t i = 0; i < count; i++)
+        free(inputs[i]);
     free(inputs);
     free(recipe);
     return status;
