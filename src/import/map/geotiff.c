@@ -1,26 +1,10 @@
-/* Rasters as cloud optimized GeoTIFF: GDAL makes the file in memory, from where it is written as all outputs are. */
-#include "base/output.h"
-#include "import/map/gdal.h"
-#include "noc_config.h"
+/* Rasters as cloud optimized GeoTIFF. */
+#include "import/map/made.h"
 
 #include <math.h>
 #include <nocturne/measure.h>
-#include <stdatomic.h>
-#include <stdio.h>
 
 #if NOC_HAVE_GDAL
-
-/* What GDAL says of a failure. */
-typedef struct complaint {
-    char text[200];
-} complaint;
-
-static void CPL_STDCALL on_error(CPLErr level, CPLErrorNum code, const char *text) {
-    complaint *c = gdal.CPLGetErrorHandlerUserData();
-    if (level >= CE_Failure && !*c->text)
-        noc_snprintf(c->text, sizeof(c->text), "%s", text);
-    (void)code;
-}
 
 static bool fill_band(GDALDatasetH set, int band, const noc_raster *r, const char *what, const char *unit,
                       float *numbers) {
@@ -54,12 +38,19 @@ static GDALDatasetH as_dataset(const noc_raster *r, const char *const (*items)[2
     return set;
 }
 
-static bool make_file(const noc_raster *r, const char *const (*items)[2], const char *name) {
+/* A raster, and what its file tells beside. */
+typedef struct told_raster {
+    const noc_raster *r;
+    const char *const (*items)[2];
+} told_raster;
+
+static bool make_file(const void *of, const char *name) {
+    const told_raster *told = of;
     static const char *const options[] = { "COMPRESS=DEFLATE",   "PREDICTOR=FLOATING_POINT",
                                            "RESAMPLING=AVERAGE", "OVERVIEW_RESAMPLING=AVERAGE",
                                            "BIGTIFF=IF_SAFER",   NULL };
     GDALDriverH cog = gdal.GDALGetDriverByName("COG");
-    GDALDatasetH set = cog ? as_dataset(r, items) : NULL;
+    GDALDatasetH set = cog ? as_dataset(told->r, told->items) : NULL;
     GDALDatasetH file =
         set ? gdal.GDALCreateCopy(cog, name, set, FALSE, (char **)(uintptr_t)options, NULL, NULL) : NULL;
     if (file)
@@ -69,39 +60,15 @@ static bool make_file(const noc_raster *r, const char *const (*items)[2], const 
     return file != NULL;
 }
 
-static noc_status write_out(const char *name, const char *path, noc_log *log) {
-    vsi_l_offset size = 0;
-    const GByte *bytes = gdal.VSIGetMemFileBuffer(name, &size, FALSE);
-    output o;
-    noc_status status = bytes ? output_open(&o, path, log) : noc_no_memory(log, "measure");
-    if (status != NOC_OK)
-        return status;
-    bool written = fwrite(bytes, 1, size, o.file) == size;
-    return output_close(&o, written ? NOC_OK : output_failed(&o, log), log);
-}
-
 noc_status noc_raster_write(const noc_raster *r, const char *path, const char *const (*items)[2], noc_log *log) {
-    static atomic_uint number;
+    /* all that is told goes into the file */
+    static const map_made made = { "GeoTIFF", ".tif", "GDAL_PAM_ENABLED", "NO", make_file };
     if (!r || !path)
         return noc_null(log, __func__);
     const char *why = gdal_load();
     if (why)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: GeoTIFF is written by GDAL: %s", path, why);
-    char name[64];
-    complaint said = { "" };
-    noc_snprintf(name, sizeof(name), "/vsimem/nocturne/raster%u.tif", atomic_fetch_add(&number, 1));
-    gdal.OGRRegisterAll();
-    gdal.CPLPushErrorHandlerEx(on_error, &said);
-    gdal.CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO"); /* all that is told goes into the file */
-    bool made = make_file(r, items, name);
-    noc_status status = made ? write_out(name, path, log)
-                             : noc_error(log, NOC_ERR_IO, "%s: GDAL cannot make a GeoTIFF of it: %s", path,
-                                         *said.text ? said.text : "it does not say why");
-    gdal.VSIUnlink(name);
-    gdal.CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", NULL);
-    gdal.CPLPopErrorHandler();
-    gdal.CPLErrorReset();
-    return status;
+    return map_write_made(&made, &(told_raster){ r, items }, path, log);
 }
 
 #else
