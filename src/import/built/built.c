@@ -24,6 +24,30 @@ static void write_crs(noct_writer *w, const noc_scene *s) {
     noct_end(w);
 }
 
+/* A text that outlives the pages of the scene that it is from. */
+static bool keep_text(noc_scene *to, const char *text, const char **kept) {
+    *kept = arena_strdup(&to->names, text);
+    return !text || *kept;
+}
+
+static bool copy_text(const char *text, char **out) {
+    *out = noc_strdup(text);
+    return !text || *out;
+}
+
+bool built_copy_head(const noc_scene *from, noc_scene *to) {
+    memcpy(to->origin, from->origin, sizeof(to->origin));
+    memcpy(to->given_origin, from->given_origin, sizeof(to->given_origin));
+    to->own_camera = from->own_camera;
+    to->maintenance = from->maintenance;
+    to->wet = from->wet;
+    to->time = from->time;
+    return keep_text(to, definition(from->crs, from->crs_kept), &to->crs_kept) &&
+           keep_text(to, definition(from->given_crs, from->given_crs_kept), &to->given_crs_kept) &&
+           copy_text(from->crs_name, &to->crs_name) && copy_text(from->given_crs_name, &to->given_crs_name) &&
+           copy_text(from->without_crs, &to->without_crs);
+}
+
 /* They are made when they are asked for: PROJ takes longer to open its database than a city to load. */
 static noc_status read_crs(noct_file *f, noc_scene *s) {
     noct_cursor c = noct_section(f, "crs");

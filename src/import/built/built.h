@@ -11,6 +11,10 @@ uint64_t built_layout(void);
 /* Into an empty scene and the importer's report. */
 noc_status built_read(importer *im, const char *path);
 
+/* What a scene as a whole is told, but for its classes: where it lies, camera, maintenance, rain, time. Into an empty
+ * one. false: memory was refused. */
+bool built_copy_head(const noc_scene *from, noc_scene *to) NOC_MUST_USE;
+
 /* inputs.c: the first of the inputs that is a built city, and was named; NULL: none is. */
 const char *built_find(const importer *im);
 /* Reads all of them, where they are of that kind. path: the first that is. */

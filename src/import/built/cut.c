@@ -249,27 +249,6 @@ static void choose_others(const cutter *c) {
     }
 }
 
-/* What a scene as a whole is told. */
-static bool copy_head(const noc_scene *s, noc_scene *to) {
-    memcpy(to->origin, s->origin, sizeof(to->origin));
-    memcpy(to->given_origin, s->given_origin, sizeof(to->given_origin));
-    memcpy(to->class_looks, s->class_looks, sizeof(to->class_looks));
-    to->class_said = s->class_said;
-    to->own_camera = s->own_camera;
-    to->maintenance = s->maintenance;
-    to->wet = s->wet;
-    to->time = s->time;
-    const char *crs = s->crs ? geo_crs_definition(s->crs) : s->crs_kept,
-               *given = s->given_crs ? geo_crs_definition(s->given_crs) : s->given_crs_kept;
-    to->crs_kept = arena_strdup(&to->names, crs);
-    to->given_crs_kept = arena_strdup(&to->names, given);
-    to->crs_name = noc_strdup(s->crs_name);
-    to->given_crs_name = noc_strdup(s->given_crs_name);
-    to->without_crs = noc_strdup(s->without_crs);
-    return (!crs || to->crs_kept) && (!given || to->given_crs_kept) && (!s->crs_name || to->crs_name) &&
-           (!s->given_crs_name || to->given_crs_name) && (!s->without_crs || to->without_crs);
-}
-
 /* Land to the horizon stays around a tile as around the city; where tiles are joined it goes. */
 static noc_status add_land(const noc_scene *s, noc_scene *to) {
     for (size_t i = 0; i < s->meshes.len && s->backdrop_count; i++) {
@@ -303,8 +282,10 @@ static noc_status cut(cutter *c, noc_scene *to, bool *taken) {
     c->lights = noc_calloc(s->lights.len + 1, sizeof(*c->lights));
     c->instances = noc_calloc(s->instances.len + 1, sizeof(*c->instances));
     c->streets = noc_calloc(s->streets.len + 1, sizeof(*c->streets));
-    if (!c->meshes || !c->lights || !c->instances || !c->streets || !find_squares(c) || !copy_head(s, to))
+    if (!c->meshes || !c->lights || !c->instances || !c->streets || !find_squares(c) || !built_copy_head(s, to))
         return noc_scene_out_of_memory(to);
+    memcpy(to->class_looks, s->class_looks, sizeof(to->class_looks));
+    to->class_said = s->class_said;
     choose_meshes(c);
     choose_others(c);
     const noc_choice choice = { c->meshes, c->lights, c->instances, c->streets, cut_mesh, c };

@@ -4,6 +4,7 @@
 #include "import/load/load.h"
 
 #include <math.h>
+#include <nocturne/text.h>
 #include <nocturne/tiles.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -14,16 +15,12 @@
 
 /* ---- writing ---- */
 
+/* UTF-8. */
 static void put_text(FILE *out, const char *text) {
-    fputc('"', out);
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-        if (*c == '"' || *c == '\\')
-            fprintf(out, "\\%c", *c);
-        else if (*c < 32)
-            fprintf(out, "\\u%04x", *c);
-        else
-            fputc(*c, out);
-    fputc('"', out);
+    json_t *string = json_string_nocheck(text);
+    if (!string || json_dumpf(string, out, JSON_ENCODE_ANY))
+        fputs("\"\"", out);
+    json_decref(string);
 }
 
 static void put_entry(FILE *out, const noc_tile_entry *t) {
@@ -74,6 +71,11 @@ noc_status noc_tiles_write(const char *folder, const char *crs, const noc_tile_e
                            noc_log *log) {
     if (!folder || (count && !entries))
         return noc_null(log, __func__);
+    for (size_t i = 0; i < count; i++)
+        for (const char *c = entries[i].location; *c; c += noc_text_utf8(c))
+            if (!noc_text_utf8(c))
+                return noc_error(log, NOC_ERR_ARGUMENT, "%s/%s: cannot name %s, which is no UTF-8: rename that tile",
+                                 folder, NAME, entries[i].location);
     char *path = noc_format("%s/%s", folder, NAME), *package = noc_format("%s/index.gpkg", folder);
     noc_status status = path && package ? write_geojson(path, crs, entries, count, log) : noc_no_memory(log, folder);
     if (!status)

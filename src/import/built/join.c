@@ -28,33 +28,6 @@ static bool same_text(const char *a, const char *b) { return a == b || (a && b &
 
 static noc_status no_memory(const joining *j) { return noc_no_memory(j->im->log, j->paths[j->at]); }
 
-/* A text of the names of `to`, so that it outlives its pages. */
-static bool keep_text(noc_scene *to, const char *text, const char **kept) {
-    *kept = arena_strdup(&to->names, text);
-    return !text || *kept;
-}
-
-static bool take_text(const char *text, char **out) {
-    *out = noc_strdup(text);
-    return !text || *out;
-}
-
-/* Of the first one. */
-static noc_status take_head(const joining *j, noc_scene *from) {
-    noc_scene *to = j->im->scene;
-    memcpy(to->origin, from->origin, sizeof(to->origin));
-    memcpy(to->given_origin, from->given_origin, sizeof(to->given_origin));
-    to->own_camera = from->own_camera;
-    to->maintenance = from->maintenance;
-    to->wet = from->wet;
-    to->time = from->time;
-    return keep_text(to, from->crs_kept, &to->crs_kept) && keep_text(to, from->given_crs_kept, &to->given_crs_kept) &&
-                   take_text(from->crs_name, &to->crs_name) && take_text(from->given_crs_name, &to->given_crs_name) &&
-                   take_text(from->without_crs, &to->without_crs)
-               ? NOC_OK
-               : no_memory(j);
-}
-
 static noc_status check_head(const joining *j, const noc_scene *from) {
     const noc_scene *to = j->im->scene;
     const char *path = j->paths[j->at], *first = j->paths[0];
@@ -90,7 +63,7 @@ static void take_land(joining *j, const noc_scene *from) {
 static noc_status append(joining *j, noc_scene *from, const noc_report *report) {
     noc_scene *to = j->im->scene;
     double shift[3];
-    noc_status status = j->at ? check_head(j, from) : take_head(j, from);
+    noc_status status = j->at ? check_head(j, from) : built_copy_head(from, to) ? NOC_OK : no_memory(j);
     if (status)
         return status;
     for (int k = 0; k < 3; k++)
