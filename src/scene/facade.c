@@ -5,18 +5,6 @@
 
 #include <math.h>
 
-bool noc_scene_reserve_facades(noc_scene *s) {
-    size_t had = s->triangle_facade.len, count = s->triangle_light.len;
-    if (!array_reserve(&s->triangle_facade, count)) {
-        noc_scene_out_of_memory(s);
-        return false;
-    }
-    if (count > had)
-        memset(s->triangle_facade.data + had, 0, (count - had) * sizeof(uint32_t));
-    s->triangle_facade.len = NOC_MAX(had, count);
-    return true;
-}
-
 uint32_t noc_scene_add_facade(noc_scene *s, const noc_facade *facade) {
     size_t first = s->facade_cells.len, cells = (size_t)facade->columns * facade->rows;
     if (s->facades.len >= INT32_MAX || first + cells >= NO_CELL || !array_reserve(&s->facades, s->facades.len + 1) ||

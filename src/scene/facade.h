@@ -15,8 +15,6 @@ typedef struct noc_facade {
 uint32_t noc_scene_add_facade(noc_scene *s, const noc_facade *facade);
 /* Is there room for a window, a parallelogram: is it within the grid, in cells that have none? */
 bool noc_scene_facade_takes(const noc_scene *s, uint32_t facade, const noc_light *shape);
-/* Room for facades of all triangles that are there: triangle_facade may be written then. false: no memory, reported. */
-bool noc_scene_reserve_facades(noc_scene *s);
 /* The facade that a triangle is of, NULL: none. */
 static inline const noc_facade_record *noc_scene_facade_of(const noc_scene *s, size_t triangle) {
     uint32_t number = triangle < s->triangle_facade.len ? s->triangle_facade.data[triangle] : 0;

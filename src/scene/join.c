@@ -137,21 +137,6 @@ static bool join_windows(noc_joiner *j, bool *taken) {
 
 /* ---- meshes ---- */
 
-/* Verdicts on walls lie as triangles do; those of none are unseen. */
-static bool join_walls(noc_joiner *j, const noc_scene_mesh *m) {
-    noc_scene *to = j->to;
-    size_t first = to->triangle_light.len, end = first + m->triangle_count;
-    if (m->model || m->first_triangle >= j->from->walls.len)
-        return true;
-    if (!array_reserve(&to->walls, end))
-        return noc_join_no_memory(j);
-    while (to->walls.len < first)
-        to->walls.data[to->walls.len++] = NOC_WALL_UNSEEN;
-    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++)
-        to->walls.data[to->walls.len++] = (uint8_t)noc_scene_wall(j->from, t);
-    return true;
-}
-
 /* A facade with its windows, as part of the mesh that is to come. */
 static bool join_facade(noc_joiner *j, size_t facade) {
     noc_scene *to = j->to;
@@ -175,21 +160,25 @@ static bool join_facade(noc_joiner *j, size_t facade) {
     return true;
 }
 
-/* Facades of walls lie as triangles do, as verdicts do. */
-static bool join_facades(noc_joiner *j, const noc_scene_mesh *m) {
+/* Verdicts on walls, and their facades, lie as triangles do; those behind the end of either have none. */
+static bool join_walls(noc_joiner *j, const noc_scene_mesh *m) {
     noc_scene *to = j->to;
+    const noc_scene *s = j->from;
     size_t first = to->triangle_light.len, end = first + m->triangle_count;
-    if (m->model || m->first_triangle >= j->from->triangle_facade.len)
+    if (m->model || m->first_triangle >= NOC_MAX(s->walls.len, s->triangle_facade.len))
         return true;
-    if (!array_reserve(&to->triangle_facade, end))
+    if (!array_reserve(&to->walls, end) || !array_reserve(&to->triangle_facade, end))
         return noc_join_no_memory(j);
+    while (to->walls.len < first)
+        to->walls.data[to->walls.len++] = NOC_WALL_UNSEEN;
     while (to->triangle_facade.len < first)
         to->triangle_facade.data[to->triangle_facade.len++] = 0;
     for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
-        uint32_t f = t < j->from->triangle_facade.len ? j->from->triangle_facade.data[t] : 0;
+        uint32_t f = t < s->triangle_facade.len ? s->triangle_facade.data[t] : 0;
         if (f && j->facade[f - 1] == NOC_JOIN_NONE && !join_facade(j, f - 1))
             return false;
         to->triangle_facade.data[to->triangle_facade.len++] = f ? j->facade[f - 1] : 0;
+        to->walls.data[to->walls.len++] = (uint8_t)noc_scene_wall(s, t);
     }
     return true;
 }
@@ -242,8 +231,7 @@ bool noc_join_mesh(noc_joiner *j, size_t mesh, uint32_t model) {
     const noc_scene_mesh *m = &s->meshes.data[mesh];
     size_t vertices = noc_mesh_end_vertex(s, mesh) - m->first_vertex;
     noc_scene_mesh made;
-    if (!begin_mesh(j, m, model, &made) || !reserve(j, m->triangle_count, vertices, m->uv) || !join_walls(j, m) ||
-        !join_facades(j, m))
+    if (!begin_mesh(j, m, model, &made) || !reserve(j, m->triangle_count, vertices, m->uv) || !join_walls(j, m))
         return false;
     made.triangle_count = m->triangle_count;
     for (size_t v = m->first_vertex; v < m->first_vertex + vertices; v++) {

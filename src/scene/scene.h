@@ -512,7 +512,8 @@ bool noc_environment_fits(int width, int height);
 static inline noc_wall_verdict noc_scene_wall(const noc_scene *s, size_t triangle) {
     return triangle < s->walls.len ? (noc_wall_verdict)s->walls.data[triangle] : NOC_WALL_UNSEEN;
 }
-/* Before the first commit: room for verdicts on all triangles that are there. false: no memory, reported. */
+/* Before the first commit: room for verdicts on all triangles that are there, and for their facades, which may be
+ * written then. false: no memory, reported. */
 bool noc_scene_reserve_walls(noc_scene *s);
 typedef struct noc_pane {
     const uint32_t *triangles; /* that show it, as numbers in the mesh; NULL: it is in window.facade */

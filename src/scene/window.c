@@ -80,14 +80,15 @@ static void shares(const noc_window_switch *to, double share[NOC_WINDOW_KIND_COU
 }
 
 bool noc_scene_reserve_walls(noc_scene *s) {
-    size_t had = s->walls.len, count = s->triangle_light.len;
-    if (!array_reserve(&s->walls, count)) {
+    size_t count = s->triangle_light.len;
+    if (!array_reserve(&s->walls, count) || !array_reserve(&s->triangle_facade, count)) {
         noc_scene_out_of_memory(s);
         return false;
     }
-    if (count > had)
-        memset(s->walls.data + had, NOC_WALL_UNSEEN, count - had);
-    s->walls.len = count;
+    while (s->walls.len < count)
+        s->walls.data[s->walls.len++] = NOC_WALL_UNSEEN;
+    while (s->triangle_facade.len < count)
+        s->triangle_facade.data[s->triangle_facade.len++] = 0;
     return true;
 }
 

@@ -83,7 +83,7 @@ static noc_scene *in_wall(int *mesh) {
     f.mesh = *mesh;
     uint32_t facade = noc_scene_add_facade(s, &f);
     assert_int_equal(facade, 1);
-    assert_true(noc_scene_reserve_facades(s));
+    assert_true(noc_scene_reserve_walls(s));
     const noc_scene_mesh *m = &s->meshes.data[*mesh];
     for (uint32_t t = m->first_triangle; t < m->first_triangle + m->triangle_count; t++)
         s->triangle_facade.data[t] = facade;

@@ -198,16 +198,18 @@ static const char *id_of(const importer *im, const taken_building *b) {
     return name ? name : "";
 }
 
+static noc_pane pane_of(const maker *m, const city_window *w, noc_light_kind kind) {
+    noc_pane pane = { .shape = { .kind = kind, .group = m->group },
+                      .window = { .level = w->level, .kind = (unsigned char)w->kind, .often = NOC_WINDOW_OFTEN } };
+    memcpy(pane.shape.position, w->corner, sizeof(w->corner));
+    memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
+    memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
+    memcpy(pane.window.emission, w->emission, sizeof(w->emission));
+    return pane;
+}
+
 /* counts: as a window, and is no further pane of one. */
-static bool add_pane(maker *m, int mesh, const city_window *w, noc_pane *pane, bool counts) {
-    pane->shape.group = m->group;
-    memcpy(pane->shape.position, w->corner, sizeof(w->corner));
-    memcpy(pane->shape.edge_u, w->edge_u, sizeof(w->edge_u));
-    memcpy(pane->shape.edge_v, w->edge_v, sizeof(w->edge_v));
-    pane->window.level = w->level;
-    pane->window.kind = (unsigned char)w->kind;
-    pane->window.often = NOC_WINDOW_OFTEN;
-    memcpy(pane->window.emission, w->emission, sizeof(w->emission));
+static bool add_pane(const maker *m, int mesh, const noc_pane *pane, bool counts) {
     if (!report_pane(m->im->report, m->input, counts)) {
         noc_scene_out_of_memory(m->im->scene);
         return false;
@@ -243,8 +245,10 @@ static noc_status add_mesh(maker *m, const char *id, int material, const city_wi
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     for (size_t i = 0; i < list->len; i++) {
         const uint32_t both[2] = { 2 * (uint32_t)i, 2 * (uint32_t)i + 1 };
-        noc_pane pane = { .triangles = both, .triangle_count = 2, .shape = { .kind = NOC_LIGHT_PARALLELOGRAM } };
-        if (!add_pane(m, index, &list->data[i], &pane, true))
+        noc_pane pane = pane_of(m, &list->data[i], NOC_LIGHT_PARALLELOGRAM);
+        pane.triangles = both;
+        pane.triangle_count = 2;
+        if (!add_pane(m, index, &pane, true))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -295,7 +299,6 @@ static noc_status add_in_walls(maker *m, const taken_building *b, const city_win
     noc_scene *s = m->im->scene;
     size_t first_wall = b->first;
     bool none = passes_walls(m->im, b);
-    uint32_t number = 0;
     noc_class cls = wall_class(m->im, b);
     while (class_of(s, first_wall) != cls)
         first_wall++;
@@ -303,7 +306,7 @@ static noc_status add_in_walls(maker *m, const taken_building *b, const city_win
     if (!array_reserve(&m->numbers, made->facades.len))
         return no_memory(m->im);
     for (size_t i = 0; i < made->facades.len; i++) {
-        number = 0;
+        uint32_t number = 0;
         noc_status status = none ? NOC_OK : add_facade(m, &made->facades.data[i], material, (int)first_wall, &number);
         if (status)
             return status;
@@ -311,13 +314,11 @@ static noc_status add_in_walls(maker *m, const taken_building *b, const city_win
     }
     for (size_t i = 0; i < made->list.len; i++) {
         const city_window *w = &made->list.data[i];
-        city_window in = put_back(w);
-        noc_pane pane = { .shape = { .kind = NOC_LIGHT_PARALLELOGRAM }, .window.facade = m->numbers.data[w->facade] };
-        memcpy(pane.shape.position, in.corner, sizeof(in.corner));
-        memcpy(pane.shape.edge_u, in.edge_u, sizeof(in.edge_u));
-        memcpy(pane.shape.edge_v, in.edge_v, sizeof(in.edge_v));
+        const city_window in = put_back(w);
+        noc_pane pane = pane_of(m, &in, NOC_LIGHT_PARALLELOGRAM);
+        pane.window.facade = m->numbers.data[w->facade];
         bool ok = pane.window.facade && noc_scene_facade_takes(s, pane.window.facade, &pane.shape)
-                      ? add_pane(m, (int)first_wall, &in, &pane, true)
+                      ? add_pane(m, (int)first_wall, &pane, true)
                       : array_push(&m->before, *w);
         if (!ok)
             return no_memory(m->im);
@@ -341,11 +342,11 @@ static noc_status take_own(maker *m, const own_mesh *o, noc_window_counts *count
         counts->windows += p->leads;
         counts->own += p->leads;
         counts->lit += p->leads && is_lit(m, &p->window);
-        noc_pane pane = { .triangles = own->triangles.data + p->first,
-                          .triangle_count = p->count,
-                          .shape.kind = p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
-                          .window.part = p->part };
-        if (!add_pane(m, (int)o->mesh, &p->window, &pane, p->leads))
+        noc_pane pane = pane_of(m, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE);
+        pane.triangles = own->triangles.data + p->first;
+        pane.triangle_count = p->count;
+        pane.window.part = p->part;
+        if (!add_pane(m, (int)o->mesh, &pane, p->leads))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
@@ -522,8 +523,7 @@ noc_status windows_add(importer *im) {
         return NOC_OK;
     noc_status status = equip(&m) ? NOC_OK : no_memory(im);
     if (!status)
-        status = noc_scene_reserve_walls(im->scene) && noc_scene_reserve_facades(im->scene) ? make_cover(&m)
-                                                                                            : NOC_ERR_MEMORY;
+        status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
     status = status ? status : add_all(&m);
     if (!status && m.crowded)
         noc_warn(im->log,
