@@ -204,26 +204,21 @@ static noc_status make_path(animation *a) {
     return NOC_OK;
 }
 
-static void hash(uint64_t *h, const void *data, size_t size) {
-    for (const unsigned char *p = data; size--; p++) /* FNV-1a */
-        *h = (*h ^ *p) * 0x100000001b3;
-}
-
 /* A name for all that decides the pictures: options, the scene, the path. */
 static void make_key(animation *a) {
-    uint64_t h = 0xcbf29ce484222325;
+    uint64_t h = 0;
     char *options = cli_options_text(a->job->args), content[NOC_CONTENT_KEY];
     noc_scene_content(a->job->scene, content);
-    hash(&h, options, strlen(options));
-    hash(&h, content, strlen(content));
+    h = cli_sum(h, options, strlen(options));
+    h = cli_sum(h, content, strlen(content));
     double seconds = noc_camera_path_seconds(a->path);
-    hash(&h, &seconds, sizeof(seconds));
+    h = cli_sum(h, &seconds, sizeof(seconds));
     for (int i = 0; i < KEY_SAMPLES; i++) {
         double t = seconds * (i + 0.5) / KEY_SAMPLES, hour = noc_camera_path_hour(a->path, t);
         noc_camera c;
         noc_camera_path_at(a->path, t, &c);
-        hash(&h, &c, sizeof(c));
-        hash(&h, &hour, sizeof(hour));
+        h = cli_sum(h, &c, sizeof(c));
+        h = cli_sum(h, &hour, sizeof(hour));
     }
     free(options);
     snprintf(a->key, sizeof(a->key), "%016llx", (unsigned long long)h);

@@ -219,7 +219,7 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
 static uint64_t sum_options(const build_args *args, const char *recipe) {
     const noc_recipe_info *info = noc_recipe_get_info(args->common.recipe);
     uint64_t sum = each_sum_text(each_sum_text(0, noc_version()), recipe);
-    sum = each_sum(sum, &args->halo, sizeof(args->halo));
+    sum = cli_sum(sum, &args->halo, sizeof(args->halo));
     for (size_t i = 0; i < args->common.given_count; i++) {
         const noc_option *o = args->common.given[i];
         bool import = in_table(noc_import_options(), o), city = in_table(noc_city_options(), o);

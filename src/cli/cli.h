@@ -95,6 +95,8 @@ char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1
  * many of the `count` features are left. free() it. */
 #define CLI_IDS_WIDTH 72
 char *cli_ids(const char *list, size_t count, size_t width);
+/* FNV-1a of more bytes; begin with 0. Never 0. */
+uint64_t cli_sum(uint64_t sum, const void *data, size_t size);
 void cli_json_text(FILE *out, const char *text); /* quoted and escaped; valid UTF-8 whatever came in */
 void cli_yaml_text(FILE *out, const char *text); /* in double quotes, as YAML reads it where it is UTF-8 */
 const char *cli_not_utf8(const char *text);      /* where it is not UTF-8; NULL where all of it is */

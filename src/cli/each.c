@@ -44,8 +44,8 @@ static const each_input **sort_west(const each_build *b, size_t *count) {
 
 /* Of those from west to east that begin not farther west than a tile is wide. */
 static around find_around(const each_build *b, const each_input **west, size_t count, const each_input *in, double m) {
-    around a = { cli_alloc((count + 1) * sizeof(*a.of)), 0 };
-    size_t low = 0, high = count;
+    around a = { NULL, 0 };
+    size_t low = 0, high = count, end;
     double from = in->extent[0] - m - b->widest;
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -54,7 +54,10 @@ static around find_around(const each_build *b, const each_input **west, size_t c
         else
             high = middle;
     }
-    for (size_t i = low; i < count && west[i]->extent[0] <= in->extent[2] + m; i++)
+    for (end = low; end < count && west[end]->extent[0] <= in->extent[2] + m;)
+        end++;
+    a.of = cli_alloc((end - low + 1) * sizeof(*a.of));
+    for (size_t i = low; i < end; i++)
         if (meets(in, west[i], m))
             a.of[a.count++] = (size_t)(west[i] - b->inputs);
     qsort(a.of, a.count, sizeof(*a.of), by_number);
@@ -65,16 +68,16 @@ static around find_around(const each_build *b, const each_input **west, size_t c
 static void make_key(const each_build *b, const each_input *in, const around *near, const around *far, char key[65]) {
     uint64_t sum[2];
     for (int i = 0; i < 2; i++) {
-        uint64_t s = each_sum(b->options, &i, sizeof(i));
+        uint64_t s = cli_sum(b->options, &i, sizeof(i));
         s = each_sum_text(s, in->name);
         for (size_t k = 0; k < near->count; k++) {
             s = each_sum_text(s, b->inputs[near->of[k]].name);
-            s = each_sum(s, &b->inputs[near->of[k]].sum, sizeof(uint64_t));
+            s = cli_sum(s, &b->inputs[near->of[k]].sum, sizeof(uint64_t));
         }
         for (size_t k = 0; k < far->count; k++)
-            s = each_sum(s, b->inputs[far->of[k]].extent, sizeof(in->extent));
+            s = cli_sum(s, b->inputs[far->of[k]].extent, sizeof(in->extent));
         for (size_t k = b->tiles; k < b->count; k++)
-            s = each_sum(s, &b->inputs[k].sum, sizeof(uint64_t));
+            s = cli_sum(s, &b->inputs[k].sum, sizeof(uint64_t));
         sum[i] = each_sum_text(s, b->place.crs);
     }
     snprintf(key, 65, "%016llx%016llx", (unsigned long long)sum[0], (unsigned long long)sum[1]);

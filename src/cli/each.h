@@ -35,9 +35,8 @@ typedef struct each_build {
 /* each_look.c: fills inputs of paths: which of them are tiles, and where these lie. What was found is kept in the
  * folder, so that parts share the work. CLI_OK, or an exit status after reporting; CLI_OK too where some are broken. */
 int each_look(each_build *b, const char *const *paths, size_t count);
-uint64_t each_sum(uint64_t sum, const void *data, size_t size); /* of more bytes; begin with 0 */
-uint64_t each_sum_file(uint64_t sum, const char *path);         /* of one that is not there nothing */
-uint64_t each_sum_text(uint64_t sum, const char *text);         /* with its end; NULL is told from "" */
+uint64_t each_sum_file(uint64_t sum, const char *path); /* of one that is not there nothing */
+uint64_t each_sum_text(uint64_t sum, const char *text); /* with its end; NULL is told from "" */
 
 /* each.c: the tiles of this part, and in the end the index. An exit status. */
 int each_run(each_build *b);

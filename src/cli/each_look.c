@@ -10,16 +10,8 @@
 
 #define KNOWN ".known" /* folder of what was found, a file an input */
 
-uint64_t each_sum(uint64_t sum, const void *data, size_t size) { /* FNV-1a */
-    const unsigned char *bytes = data;
-    sum = sum ? sum : 0xcbf29ce484222325u;
-    for (size_t i = 0; i < size; i++)
-        sum = (sum ^ bytes[i]) * 0x100000001b3u;
-    return sum ? sum : 1;
-}
-
 uint64_t each_sum_text(uint64_t sum, const char *text) {
-    return text ? each_sum(sum, text, strlen(text) + 1) : each_sum(sum, "\1", 1);
+    return text ? cli_sum(sum, text, strlen(text) + 1) : cli_sum(sum, "\1", 1);
 }
 
 static const char *last_name(const char *path) {
@@ -45,7 +37,7 @@ static bool sum_file(const char *path, uint64_t *sum) {
     FILE *in = fopen(path, "rb");
     *sum = 0;
     for (size_t n; in && (n = fread(buffer, 1, sizeof(buffer), in)) > 0;)
-        *sum = each_sum(*sum, buffer, n);
+        *sum = cli_sum(*sum, buffer, n);
     bool ok = in && !ferror(in);
     if (in)
         fclose(in);
@@ -54,7 +46,7 @@ static bool sum_file(const char *path, uint64_t *sum) {
 
 uint64_t each_sum_file(uint64_t sum, const char *path) {
     uint64_t of;
-    return sum_file(path, &of) ? each_sum(sum, &of, sizeof(of)) : sum;
+    return sum_file(path, &of) ? cli_sum(sum, &of, sizeof(of)) : sum;
 }
 
 /* ---- what was found before ---- */

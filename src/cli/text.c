@@ -115,6 +115,14 @@ char *cli_format(const char *fmt, ...) {
     return text;
 }
 
+uint64_t cli_sum(uint64_t sum, const void *data, size_t size) { /* FNV-1a */
+    const unsigned char *bytes = data;
+    sum = sum ? sum : 0xcbf29ce484222325u;
+    for (size_t i = 0; i < size; i++)
+        sum = (sum ^ bytes[i]) * 0x100000001b3u;
+    return sum ? sum : 1;
+}
+
 void cli_json_text(FILE *out, const char *text) {
     fputc('"', out);
     for (const unsigned char *s = (const unsigned char *)(text ? text : ""); *s;) {
