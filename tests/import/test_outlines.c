@@ -1,26 +1,8 @@
 /* Buildings of which a CityGML has outlines and heights alone. */
+#include "city_expect.h"
 #include "city_pieces.h"
-#include "city_sink.h"
 
 #include <math.h>
-
-static city_sink sink;
-
-static noc_status read_text(const char *text, int lod) { return city_read_bytes(&sink, text, strlen(text), lod); }
-
-/* Reads and expects the polygons of exactly these ids, in order, separated by blanks. */
-static void expect(const char *text, int lod, const char *ids) {
-    assert_int_equal(read_text(text, lod), NOC_OK);
-    NOC_ARRAY(char) seen = { 0 };
-    for (size_t i = 0; i < sink.polygons.len; i++) {
-        if (i)
-            assert_true(array_push(&seen, ' '));
-        assert_true(array_append(&seen, sink.polygons.data[i].id, strlen(sink.polygons.data[i].id)));
-    }
-    assert_true(array_push(&seen, 0));
-    assert_string_equal(seen.data, ids);
-    array_free(&seen);
-}
 
 /* Corners' heights of the polygons of a class, the least and the greatest; their number. */
 static size_t heights_of(noc_class cls, double *low, double *high) {
