@@ -8,7 +8,7 @@
  *
  * Several such files are read as one scene, where they stand in the CRS that all were built in: what they share
  * (materials, models, groups of lights by name) is there once, and the land to the horizon is laid around all. The
- * camera, the map around the scene and the time are the first one's. Nothing is looked at that two may both hold.
+ * camera, the environment map and the time are those of the first file. An object that two files hold is there twice.
  *
  * The file is read as a whole and checked: what it holds is a stranger's word, as of all inputs. Its numbers lie as the
  * machine has them, and as this version of the library keeps them: one of another version, or of a machine with another
@@ -24,8 +24,8 @@ extern "C" {
 
 /* A tile of a city that is built in parts: what of a scene is its own, of which it is loaded with those around it. */
 typedef struct noc_tile {
-    /* Of this tile and those around it: their files, as they were loaded, and where these lie, x0, y0, x1, y1 in the
-     * scene's CRS; in the same order whatever the tile */
+    /* This tile and its neighbours: the paths that they were loaded by, and their extents, x0, y0, x1, y1 in the
+     * scene's CRS. Tiles must be listed in one order in every call */
     const char *const *paths;
     const double (*extents)[4];
     size_t count, own; /* own: which of them it is */

@@ -103,9 +103,9 @@ typedef enum noc_aov {
     NOC_AOV_INFLUENTIAL_SHARE,
     NOC_AOV_RUNNER_UP,
     NOC_AOV_RUNNER_UP_SHARE, /* 0 where there is a first and no second */
-    /* Estimate of the pixel's luminance before any shadow ray, cd/m2: the sum over its tile's list of unshadowed
-     * luminance times the visibility learned in earlier frames (1/2 if unknown). Candidates lists alone. The mean over
-     * the frames accumulated since the view was first requested */
+    /* Expected luminance, cd/m2, estimated without shadow rays: unshadowed luminance of each light in the tile's list,
+     * times its visibility in earlier frames (1/2 if unknown), summed. Candidates lists alone. The mean over the frames
+     * accumulated since the view was first requested */
     NOC_AOV_EXPECTED,
     NOC_AOV_COUNT
 } noc_aov;
