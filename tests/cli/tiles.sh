@@ -137,6 +137,15 @@ expect "tiles of a box" 2 'bbox is not for --each' build --each t/tile-0000.gml 
 expect "a folder that is a file" 1 'lamps.csv: cannot be a folder' build --each t/tile-0000.gml -o lamps.csv
 expect "tiles that are built" 2 'is built' build --each built/tile-0000.noct -o shared
 expect "no city" 1 'none of the 1 inputs is a city model' build --each lamps.csv --crs EPSG:25832 -o shared
+mkdir latin && cp t/tile-0000.gml latin/
+# a name that JSON cannot hold
+odd=$(printf 'latin/\344.gml')
+mv latin/tile-0000.gml "$odd"
+expect "a name that is no UTF-8" 1 'which is no UTF-8: rename that tile' build --each "$odd" -o named
+test ! -e named/index.geojson && mv "$odd" latin/ä.gml && rm -rf named
+run build --each latin/ä.gml -q -o named
+run info named --no-scene
+result $status "one of letters beyond ASCII is found by the index"
 mkdir twice && cp t/tile-0000.gml twice/
 expect "two of a name" 1 'would both be tile-0000.noct' build --each t/tile-0000.gml twice/tile-0000.gml -o shared
 expect "a tile twice" 1 'is given twice' info built/tile-0000.noct built/tile-0000.noct
